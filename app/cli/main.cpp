@@ -1,0 +1,30 @@
+/// @file
+/// `tautline`, the operator's command line.
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include <cstdio>
+
+#include "app/cli/mission_command.h"
+#include "app/cli/report_command.h"
+#include "common/error.h"
+
+int main(int argc, char** argv) {
+  using namespace tautline;
+  CLI::App app{"Tautline operator command line", "tautline"};
+  app.require_subcommand(1);
+  ExitCode result = ExitCode::kOk;
+  cli::addMissionCommand(app, result);
+  cli::addReportCommand(app, result);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? static_cast<int>(ExitCode::kOk) : static_cast<int>(ExitCode::kUsage);
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "tautline: error: %s\n", e.what());
+    return static_cast<int>(e.code());
+  }
+  return static_cast<int>(result);
+}

@@ -1,0 +1,118 @@
+#pragma once
+
+/// @file
+/// The seam between the station's core and its devices: what sensors say (SensorFrame) and what the station commands
+/// (VehicleCommand). Plain data: drivers fill and read it, estimation and control see nothing else of the hardware.
+///
+/// Frames and symbols: docs/notation.md. SI units, radians. Every sample carries time, sequence and validity;
+/// "no new data" is a normal state: the sample keeps its old sequence number.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "common/fields.h"
+#include "common/time.h"
+
+namespace tautline {
+
+/// What a run is made of. In every state message and in every log's name.
+enum class RunMode : std::uint8_t { kSim, kHil, kReal };
+inline constexpr std::array<EnumName<RunMode>, 3> kRunModeNames{
+    {{RunMode::kSim, "SIM"}, {RunMode::kHil, "HIL"}, {RunMode::kReal, "REAL"}}};
+
+template <class T>
+struct Sample {
+  Time time{};                ///< When it was measured, or (no time stamp in the protocol) when its last byte arrived.
+  std::uint32_t sequence{0};  ///< Grows by one with each new sample; 0 = none yet.
+  bool valid{false};          ///< False: never received, or the last one was out of range.
+  T value{};
+};
+
+/// Tether reel. `length` is total tether out, reel to drone, by the driver's nominal calibration.
+struct ReelReading {
+  double counts{0.0};             ///< Raw encoder counts since the reel's power-on.
+  double length{0.0};             ///< L_total_meas [m], >= 0, nominal scale and offset applied.
+  std::optional<double> tension;  ///< Motor tension at the reel [N], where the reel has that sensor.
+};
+
+/// Tether angles sensed at the drone: the tangent of the tether at D, so relative to the active anchor A, with sag.
+struct TetherAngles {
+  double theta{0.0};               ///< Tangent elevation at D [rad], in [-pi/2, pi/2], up positive.
+  double phi{0.0};                 ///< Azimuth [rad], about +y from z towards x, any branch.
+  std::optional<double> altitude;  ///< Barometric height above take-off [m], where sensed.
+};
+
+struct AttitudeReading {
+  Eigen::Quaterniond R_WB{Eigen::Quaterniond::Identity()};  ///< Body B to world W; level = identity up to yaw. Unit norm.
+};
+
+struct GimbalReading {
+  double pitch{0.0};  ///< Camera pitch [rad], up positive, 0 = horizon.
+};
+
+/// What the vehicle says it is doing, in terms that every device can map to.
+enum class VehiclePhase : std::uint8_t { kUnknown, kIdle, kFlying, kLanding, kStopped, kFault };
+inline constexpr std::array<EnumName<VehiclePhase>, 6> kVehiclePhaseNames{{{VehiclePhase::kUnknown, "unknown"},
+                                                                          {VehiclePhase::kIdle, "idle"},
+                                                                          {VehiclePhase::kFlying, "flying"},
+                                                                          {VehiclePhase::kLanding, "landing"},
+                                                                          {VehiclePhase::kStopped, "stopped"},
+                                                                          {VehiclePhase::kFault, "fault"}}};
+
+struct VehicleReading {
+  VehiclePhase phase{VehiclePhase::kUnknown};
+  std::uint8_t flight_mode{0};       ///< Device's own code (docs/devices.md).
+  std::uint16_t flags{0};            ///< Device's own flag bits, 0 = all good.
+  double backup_battery_voltage{0};  ///< [V]
+};
+
+struct GroundReading {
+  std::uint8_t mode{0};       ///< Device's own code; 10 = remote controlled.
+  double battery_voltage{0};  ///< [V]
+};
+
+/// Counters of a device's link, for telemetry and arming checks.
+struct LinkStatus {
+  bool connected{false};
+  std::uint64_t bytes_in{0};
+  std::uint64_t bytes_out{0};
+  std::uint32_t lines_ok{0};
+  std::uint32_t lines_bad{0};      ///< Cut, garbled, out of range or unknown.
+  std::uint32_t bytes_dropped{0};  ///< Output that the port could not take.
+  std::uint32_t reconnects{0};
+};
+
+/// Everything the core sees of the hardware in one cycle.
+struct SensorFrame {
+  Sample<ReelReading> reel;
+  Sample<TetherAngles> angles;
+  Sample<AttitudeReading> attitude;
+  Sample<GimbalReading> gimbal;
+  Sample<VehicleReading> vehicle;
+  Sample<GroundReading> ground;
+  LinkStatus link;
+};
+
+enum class VehicleAction : std::uint8_t {
+  kNone,
+  kTakeoff,    ///< Start motors and lift off; repeated by the supervisor until the vehicle says it flies.
+  kMotorStop,  ///< Motors off at once.
+};
+
+/// What the station commands in one cycle. Rates are of the vehicle's own set-points, relative to the active anchor.
+struct VehicleCommand {
+  bool engaged{false};            ///< False: nothing but zero rates may reach the device.
+  double length_rate{0.0};        ///< dL/dt [m/s], pay-out positive.
+  double elevation_rate{0.0};     ///< d(theta)/dt [rad/s], up positive.
+  double azimuth_rate{0.0};       ///< d(phi)/dt [rad/s].
+  double yaw_rate{0.0};           ///< About +y [rad/s].
+  double gimbal_pitch_rate{0.0};  ///< Up positive [rad/s].
+  bool reel_controller{false};    ///< Vehicle's own tether-length controller (off for take-off and landing).
+  VehicleAction action{VehicleAction::kNone};
+};
+
+}  // namespace tautline

@@ -1,0 +1,22 @@
+# tautline_lcm_types(target FILES a.lcm …): C++ bindings of LCM types, generated at build time with Debian's lcm-gen
+# (Debian's LCM ships no CMake configuration). Headers land in <build>/lcmtypes/tautline/*.hpp and are included as
+# <tautline/name_t.hpp>.
+function(tautline_lcm_types target)
+  cmake_parse_arguments(ARG "" "" "FILES" ${ARGN})
+  set(out "${CMAKE_BINARY_DIR}/lcmtypes")
+  set(headers "")
+  set(inputs "")
+  foreach(file ${ARG_FILES})
+    get_filename_component(name "${file}" NAME_WE)
+    list(APPEND headers "${out}/tautline/${name}.hpp")
+    list(APPEND inputs "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+  endforeach()
+  add_custom_command(OUTPUT ${headers}
+    COMMAND "${LCM_GEN}" -x --cpp-std c++11 --cpp-hpath "${out}" ${inputs}
+    DEPENDS ${inputs} COMMENT "Generating LCM types" VERBATIM)
+  add_custom_target(${target}_generate DEPENDS ${headers})
+  add_library(${target} INTERFACE)
+  add_dependencies(${target} ${target}_generate)
+  target_include_directories(${target} SYSTEM INTERFACE "${out}")
+  target_link_libraries(${target} INTERFACE PkgConfig::LCM)
+endfunction()

@@ -1,0 +1,95 @@
+# tautline_library / tautline_program / tautline_test / tautline_benchmark / tautline_fuzzer:
+# one set of flags and conventions for every target of the project.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+
+add_library(tautline_flags INTERFACE)
+target_include_directories(tautline_flags INTERFACE "${CMAKE_SOURCE_DIR}")
+target_compile_options(tautline_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion
+  -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Wcast-qual -Wformat=2 -Wimplicit-fallthrough
+  -ffp-contract=off)  # same floating-point results on x86-64 and aarch64
+if(TAUTLINE_SANITIZE)
+  target_compile_options(tautline_flags INTERFACE
+    -fsanitize=${TAUTLINE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(tautline_flags INTERFACE -fsanitize=${TAUTLINE_SANITIZE})
+endif()
+
+# tautline_library(name SOURCES a.cpp … LINK public targets … [PRIVATE_LINK …])
+function(tautline_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE tautline_flags ${ARG_PRIVATE_LINK} PUBLIC ${ARG_LINK})
+    target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}")
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE ${ARG_LINK})
+    target_include_directories(${name} INTERFACE "${CMAKE_SOURCE_DIR}")
+  endif()
+endfunction()
+
+# tautline_program(name SOURCES … LINK …): a program that users run.
+function(tautline_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK})
+endfunction()
+
+# tautline_test(name SOURCES … LINK … [LABELS fast|slow|vm] [TIMEOUT s]): a GoogleTest binary, one ctest entry.
+function(tautline_test name)
+  if(NOT TAUTLINE_BUILD_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS fast)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/test")
+  target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE TAUTLINE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()
+
+# tautline_benchmark(name SOURCES … LINK …): a Google Benchmark program in build/<preset>/benchmark.
+function(tautline_benchmark name)
+  if(NOT TAUTLINE_BUILD_BENCHMARKS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/benchmark")
+  target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK} benchmark::benchmark benchmark::benchmark_main)
+endfunction()
+
+# tautline_fuzzer(name SOURCE f.cpp CORPUS dir LINK …): with clang and TAUTLINE_BUILD_FUZZERS a libFuzzer program; always a
+# ctest entry that runs the checked-in corpus through the same entry point.
+function(tautline_fuzzer name)
+  cmake_parse_arguments(ARG "" "SOURCE;CORPUS" "LINK" ${ARGN})
+  if(TAUTLINE_BUILD_FUZZERS)
+    add_executable(${name} ${ARG_SOURCE})
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/fuzz")
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer,address,undefined)
+    target_link_options(${name} PRIVATE -fsanitize=fuzzer,address,undefined)
+    target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK})
+  endif()
+  if(TAUTLINE_BUILD_TESTS)
+    add_executable(${name}_corpus ${ARG_SOURCE} "${CMAKE_SOURCE_DIR}/common/testing/run_corpus.cpp")
+    set_target_properties(${name}_corpus PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/test")
+    target_link_libraries(${name}_corpus PRIVATE tautline_flags ${ARG_LINK})
+    add_test(NAME ${name}_corpus COMMAND ${name}_corpus "${ARG_CORPUS}")
+    set_tests_properties(${name}_corpus PROPERTIES LABELS fast TIMEOUT 300)
+  endif()
+endfunction()
