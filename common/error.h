@@ -23,12 +23,12 @@ enum class ExitCode : int {
 
 /// Where and what a user's input is wrong. Empty or zero members are left out of the text.
 struct InputProblem {
-  std::string file;     ///< Path as the user gave it.
-  int line{0};          ///< 1-based.
-  std::string key;      ///< Dotted key or row, e.g. "waypoints[3].position_m".
-  std::string problem;  ///< What is wrong, with the value that was found.
-  std::string allowed;  ///< What would be accepted.
-  std::string remedy;   ///< What to do about it.
+  std::string file{};     ///< Path as the user gave it.
+  int line{0};            ///< 1-based.
+  std::string key{};      ///< Dotted key or row, e.g. "waypoints[3].position_m".
+  std::string problem{};  ///< What is wrong, with the value that was found.
+  std::string allowed{};  ///< What would be accepted.
+  std::string remedy{};   ///< What to do about it.
 };
 
 /// One line: "file:line: key: problem; allowed: …; …remedy".

@@ -7,17 +7,23 @@
 
 #include <cstdio>
 
+#include "app/cli/black_box_command.h"
+#include "app/cli/flight_command.h"
 #include "app/cli/mission_command.h"
 #include "app/cli/report_command.h"
+#include "app/version.h"
 #include "common/error.h"
 
 int main(int argc, char** argv) {
   using namespace tautline;
   CLI::App app{"Tautline operator command line", "tautline"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", kVersion);
   ExitCode result = ExitCode::kOk;
+  cli::addFlightCommands(app, result);
   cli::addMissionCommand(app, result);
   cli::addReportCommand(app, result);
+  cli::addBlackBoxCommand(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -11,6 +11,7 @@ if(CCACHE_PROGRAM)
 endif()
 
 add_library(tautline_flags INTERFACE)
+target_compile_definitions(tautline_flags INTERFACE TAUTLINE_VERSION="${PROJECT_VERSION}")
 target_include_directories(tautline_flags INTERFACE "${CMAKE_SOURCE_DIR}")
 target_compile_options(tautline_flags INTERFACE
   -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion
@@ -20,6 +21,13 @@ if(TAUTLINE_SANITIZE)
   target_compile_options(tautline_flags INTERFACE
     -fsanitize=${TAUTLINE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(tautline_flags INTERFACE -fsanitize=${TAUTLINE_SANITIZE})
+endif()
+
+if(TAUTLINE_BUILD_FUZZERS)
+  # The libraries under test carry coverage and sanitizers; the fuzzer's own main is linked by tautline_fuzzer().
+  target_compile_options(tautline_flags INTERFACE
+    -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(tautline_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
 # tautline_library(name SOURCES a.cpp … LINK public targets … [PRIVATE_LINK …])
@@ -63,6 +71,16 @@ function(tautline_test name)
   set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
 endfunction()
 
+# tautline_script_test(name script [arguments …]): a script as a test; it finds the programs through TAUTLINE_BIN.
+function(tautline_script_test name script)
+  if(NOT TAUTLINE_BUILD_TESTS)
+    return()
+  endif()
+  add_test(NAME ${name} COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${ARGN})
+  set_tests_properties(${name} PROPERTIES LABELS fast TIMEOUT 300
+    ENVIRONMENT "TAUTLINE_BIN=$<TARGET_FILE_DIR:tautline>;TAUTLINE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
+endfunction()
+
 # tautline_benchmark(name SOURCES … LINK …): a Google Benchmark program in build/<preset>/benchmark.
 function(tautline_benchmark name)
   if(NOT TAUTLINE_BUILD_BENCHMARKS)
@@ -81,8 +99,7 @@ function(tautline_fuzzer name)
   if(TAUTLINE_BUILD_FUZZERS)
     add_executable(${name} ${ARG_SOURCE})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/fuzz")
-    target_compile_options(${name} PRIVATE -fsanitize=fuzzer,address,undefined)
-    target_link_options(${name} PRIVATE -fsanitize=fuzzer,address,undefined)
+    target_link_options(${name} PRIVATE -fsanitize=fuzzer)
     target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK})
   endif()
   if(TAUTLINE_BUILD_TESTS)

@@ -1,0 +1,138 @@
+#include "app/bench/lockstep.h"
+
+#include <array>
+
+#include <tautline/operator_command_t.hpp>
+#include <tautline/sim_truth_t.hpp>
+
+#include "app/station/mission_upload.h"
+#include "app/version.h"
+#include "common/error.h"
+#include "common/toml/config_file.h"
+#include "lcmtypes/channels.h"
+
+namespace tautline::bench {
+namespace {
+
+constexpr Duration kTruthPeriod = std::chrono::milliseconds(20);
+constexpr Duration kLoopPeriod = std::chrono::seconds(1);
+constexpr std::int64_t kSession = 1;  // the only operator there is
+
+StationConfig forBench(const LockstepConfig& config) {
+  if (!config.world.start) {
+    throw InputError({.key = "start_m", .problem = "the scene has none", .remedy = "say where the drone is parked"});
+  }
+  StationConfig station = config.station;
+  station.run_mode = RunMode::kSim;
+  station.core.guidance.home_position_m = *config.world.start;
+  return station;
+}
+
+}  // namespace
+
+Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
+    : period_(fromSeconds(1.0 / config.station.loop_rate_hz)),
+      simulator_(config.sim, config.world, config.seed),
+      port_(simulator_),
+      device_(port_, forBench(config).fotokite),
+      station_(forBench(config).core),
+      sink_(sink) {
+  if (sink_ == nullptr) return;
+  telemetry_ = std::make_unique<Telemetry>(*sink_, RunMode::kSim, Duration::zero(), fromSeconds(1.0 / config.station.telemetry_rate_hz));
+  telemetry_->setParams("tautline-bench", kVersion, dumpConfig(forBench(config)));
+  telemetry_->publishParams(now_);
+}
+
+const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command, const tautline::mission_chunk_t* chunk) {
+  now_ += period_;
+  simulator_.advanceTo(now_);
+  input_.now = now_;
+  device_.read(now_, input_.sensors);
+  input_.command = command;
+  input_.chunk = chunk;
+  const StepOutput& out = station_.step(input_);
+  device_.write(now_, out.command);
+  output_ = &out;
+  statistics_.record(Duration::zero(), Duration::zero(), 0);
+  if (telemetry_) {
+    recordOperator();
+    telemetry_->publish(input_, out);
+    if (now_ >= next_truth_) recordTruth();
+    if (now_ >= next_loop_) {
+      next_loop_ = now_ + kLoopPeriod;
+      telemetry_->publishLoop(now_, period_, statistics_.snapshot(), station_.commandsRefused());
+    }
+  }
+  return out;
+}
+
+template <class Message>
+void Lockstep::record(const char* channel, Message message) noexcept {
+  std::array<std::uint8_t, 4096> buffer{};
+  message.utime = toMicroseconds(now_);
+  const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
+  if (size > 0) sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});
+}
+
+/// What lcm-logger would have heard of the operator.
+void Lockstep::recordOperator() noexcept {
+  if (input_.command) {
+    tautline::operator_command_t message{};
+    message.session = input_.command->session;
+    message.sequence = input_.command->sequence;
+    message.verb = static_cast<std::int8_t>(input_.command->request);
+    message.mission_hash = static_cast<std::int64_t>(input_.command->mission_hash);
+    record(channel::kOperatorCommand, message);
+  }
+  if (input_.chunk != nullptr) record(channel::kMissionChunk, *input_.chunk);
+}
+
+void Lockstep::recordTruth() noexcept {
+  next_truth_ = now_ + kTruthPeriod;
+  tautline::sim_truth_t message{};
+  sim::fillTruth(truth(), 0, message);
+  record(channel::kSimTruth, message);
+}
+
+FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration limit,
+                        const std::function<void(const Lockstep&)>& each_cycle) {
+  FlightResult result;
+  const Time end = bench.now() + limit;
+  std::int32_t sequence = 0;
+  const auto cycle = [&](const std::optional<OperatorCommand>& command = {}, const tautline::mission_chunk_t* chunk = nullptr) {
+    const StepOutput& out = bench.step(command, chunk);
+    if (each_cycle) each_cycle(bench);
+    return out.ack && out.ack->result == AckResult::kAccepted;
+  };
+  const auto ask = [&](Request request) { return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash}); };
+  const auto over = [&] { return bench.now() >= end || bench.truth().crashed; };
+  const auto flyUntil = [&](Mode mode) {
+    while (!over() && bench.output().supervision.mode != mode) cycle();
+    return !over();
+  };
+
+  // Telemetry has to run for a moment before the station lets itself be armed.
+  while (!result.armed && !over()) {
+    for (int i = 0; i < 50; ++i) cycle();
+    result.armed = ask(Request::kArm);
+  }
+  result.took_off = result.armed && ask(Request::kTakeoff) && flyUntil(Mode::kHold);
+  if (result.took_off) {
+    forEachChunk(mission, [&](tautline::mission_chunk_t& chunk) {
+      chunk.session = kSession;
+      chunk.sequence = ++sequence;
+      return cycle({}, &chunk);
+    });
+    if (ask(Request::kNavigate)) flyUntil(Mode::kHold);
+    result.completed = bench.output().mission.state == MissionState::kCompleted;
+  }
+  if (!over() && bench.output().supervision.mode != Mode::kStandby) {
+    ask(Request::kLand);
+    result.landed = flyUntil(Mode::kStandby) && bench.truth().on_ground && !bench.truth().motors_on;
+  }
+  result.crash = bench.truth().crash_reason;
+  result.duration = bench.now() - Time{};
+  return result;
+}
+
+}  // namespace tautline::bench

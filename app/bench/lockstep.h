@@ -1,0 +1,81 @@
+#pragma once
+
+/// @file
+/// The station's core, its real driver and the simulated machine in one process on one virtual clock: the lock-step rung of
+/// the bench. Faster than real time; the same seed gives the same log, byte for byte.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "app/bench/memory_port.h"
+#include "app/station/station.h"
+#include "app/station/station_config.h"
+#include "app/station/telemetry.h"
+#include "common/mission/mission_file.h"
+#include "common/mission/scene.h"
+#include "drivers/fotokite_device.h"
+#include "sim_hil/sim_config.h"
+#include "sim_hil/simulator.h"
+
+namespace tautline::bench {
+
+struct LockstepConfig {
+  StationConfig station;
+  sim::SimConfig sim;
+  Scene world;  ///< In W, with a start.
+  std::uint64_t seed{1};
+};
+
+/// One flight. The bench is the operator: it arms, takes off, navigates and lands as the command line would.
+class Lockstep {
+ public:
+  /// `sink` gets every message of station and simulator, and outlives the bench; null: none. Throws InputError.
+  Lockstep(const LockstepConfig& config, TelemetrySink* sink);
+
+  /// One cycle, with an operator's command or a piece of a mission if there is one.
+  const StepOutput& step(const std::optional<OperatorCommand>& command = {}, const tautline::mission_chunk_t* chunk = nullptr);
+
+  [[nodiscard]] Time now() const noexcept { return now_; }
+  [[nodiscard]] const StepOutput& output() const noexcept { return *output_; }
+  [[nodiscard]] const sim::Truth& truth() const noexcept { return simulator_.truth(); }
+  [[nodiscard]] const SensorFrame& sensors() const noexcept { return input_.sensors; }
+  [[nodiscard]] MemoryPort& port() noexcept { return port_; }
+
+ private:
+  template <class Message>
+  void record(const char* channel, Message message) noexcept;
+  void recordOperator() noexcept;
+  void recordTruth() noexcept;
+
+  Duration period_;
+  sim::Simulator simulator_;
+  MemoryPort port_;
+  FotokiteDevice device_;
+  Station station_;
+  TelemetrySink* sink_;
+  std::unique_ptr<Telemetry> telemetry_;
+  StepInput input_;
+  const StepOutput* output_{nullptr};
+  Time now_{};
+  Time next_truth_{};
+  Time next_loop_{};
+  LoopStatistics statistics_;
+};
+
+/// How a scripted flight ended.
+struct FlightResult {
+  bool armed{false};
+  bool took_off{false};
+  bool completed{false};
+  bool landed{false};
+  sim::CrashReason crash{sim::CrashReason::kNone};
+  Duration duration{};  ///< Virtual time from start to end.
+};
+
+/// Arms, takes off, flies `mission` and lands; gives up at `limit` of virtual time. `each_cycle` (may be empty) is called after
+/// every cycle.
+FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration limit,
+                        const std::function<void(const Lockstep&)>& each_cycle = {});
+
+}  // namespace tautline::bench

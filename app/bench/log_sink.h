@@ -1,0 +1,26 @@
+#pragma once
+
+/// @file
+/// Telemetry straight into an LCM log file, with the messages' own times.
+
+#include <filesystem>
+
+#include <lcm/eventlog.h>
+
+#include "app/station/telemetry.h"
+
+namespace tautline::bench {
+
+class LogSink final : public TelemetrySink {
+ public:
+  /// Starts `path` anew. @throws InputError if it cannot be written.
+  explicit LogSink(const std::filesystem::path& path);
+  ~LogSink() override;
+
+  bool publish(const char* channel, std::int64_t utime, std::span<const std::uint8_t> bytes) noexcept override;
+
+ private:
+  lcm_eventlog_t* log_{nullptr};
+};
+
+}  // namespace tautline::bench

@@ -1,0 +1,37 @@
+#include "app/bench/memory_port.h"
+
+#include <array>
+
+namespace tautline::bench {
+
+void MemoryPort::poll(Time /*now*/) noexcept {
+  if (connected_) return;
+  // What the device says while nobody listens is gone, as on a real cable.
+  std::array<std::uint8_t, 1024> lost{};
+  while (simulator_.transmit(lost) > 0) {
+  }
+}
+
+ReadResult MemoryPort::read(std::span<std::uint8_t> buffer) noexcept {
+  if (!connected_) return {};
+  const std::size_t count = simulator_.transmit(buffer);
+  counters_.bytes_in += count;
+  return {count};
+}
+
+WriteResult MemoryPort::write(std::span<const std::uint8_t> message) noexcept {
+  if (!connected_) {
+    counters_.bytes_dropped += static_cast<std::uint32_t>(message.size());
+    return {};
+  }
+  simulator_.receive(message);
+  counters_.bytes_out += message.size();
+  return {true};
+}
+
+void MemoryPort::plug() noexcept {
+  if (!connected_) ++counters_.reconnects;
+  connected_ = true;
+}
+
+}  // namespace tautline::bench

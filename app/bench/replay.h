@@ -1,0 +1,30 @@
+#pragma once
+
+/// @file
+/// A recorded flight stepped again: the inputs of a log through a new core, its commands compared with the recorded ones.
+/// The same bytes in give the same commands out; a difference is a change of behaviour.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include <tautline/station_input_t.hpp>
+
+#include "app/station/station.h"
+
+namespace tautline::bench {
+
+/// The input of a cycle as it was logged, without the piece of a mission that may belong to it.
+[[nodiscard]] StepInput inputOf(const tautline::station_input_t& message) noexcept;
+
+struct ReplayResult {
+  std::int64_t cycles{0};
+  std::int64_t commands_compared{0};
+  std::int64_t differences{0};
+  std::string first_difference;  ///< Empty if there is none.
+};
+
+/// Replays `log` with the configuration that is in it. @throws InputError for a log that cannot be replayed.
+[[nodiscard]] ReplayResult replay(const std::filesystem::path& log);
+
+}  // namespace tautline::bench

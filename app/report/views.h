@@ -1,0 +1,69 @@
+#pragma once
+
+/// @file
+/// Pictures of things in space: top, front and side view, laid out so that neighbouring views share
+/// an axis. Frame W (y up), [m].
+///
+///     top    x to the right, z downwards  (seen from above)
+///     front  x to the right, y upwards    (seen from +z)
+///     side   z to the right, y upwards    (seen from -x)
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/fields.h"
+#include "common/mission/scene.h"
+#include "common/plot/figure.h"
+
+namespace tautline::report {
+
+enum class View : std::uint8_t { kTop, kFront, kSide };
+inline constexpr std::array<EnumName<View>, 3> kViewNames{
+    {{View::kTop, "top"}, {View::kFront, "front"}, {View::kSide, "side"}}};
+
+/// A line or a cloud of points in space, drawn like a plot::Series.
+struct SpaceCurve {
+  std::string name{};  ///< In the legend; empty = not listed.
+  std::vector<Eigen::Vector3d> points{};
+  plot::Style style{plot::Style::kLine};
+  plot::Colour colour{plot::Colour::kBlue};
+  double width{1.6};
+  plot::Symbol symbol{plot::Symbol::kDot};
+};
+
+struct SpaceMarker {
+  Eigen::Vector3d at{Eigen::Vector3d::Zero()};
+  std::string label{};
+  plot::Symbol symbol{plot::Symbol::kCircle};
+  plot::Colour colour{plot::Colour::kBlack};
+  double size{1.0};
+  std::string name{};  ///< In the legend; empty = not listed.
+};
+
+/// What is to be seen, in drawing order: obstacles, curves, markers.
+struct Drawing {
+  std::string title{};
+  std::vector<Box> boxes{};
+  std::vector<Prism> prisms{};
+  std::vector<SpaceCurve> curves{};
+  std::vector<SpaceMarker> markers{};
+};
+
+/// Adds obstacles, room and floor of a scene that is in W (sceneInWorld()).
+void addScene(Drawing& drawing, const Scene& scene);
+
+[[nodiscard]] plot::Point project(View view, const Eigen::Vector3d& p);
+
+/// One view as a panel of equal aspect.
+[[nodiscard]] plot::Panel viewPanel(const Drawing& drawing, View view);
+
+/// One view as a figure of its own.
+[[nodiscard]] plot::Figure viewFigure(const Drawing& drawing, View view);
+
+/// All three views and one legend.
+[[nodiscard]] plot::Figure viewsFigure(const Drawing& drawing);
+
+}  // namespace tautline::report

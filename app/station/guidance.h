@@ -1,0 +1,80 @@
+#pragma once
+
+/// @file
+/// What to fly in each mode: take-off, hover, mission, landing. All of it goes through the one motion executor; guidance
+/// chooses its route and tells the supervisor how far it is.
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "common/estimate.h"
+#include "common/mission_plan.h"
+#include "common/vehicle.h"
+#include "control/contact_stack.h"
+#include "control/motion_executor.h"
+#include "control/supervisor.h"
+
+namespace tautline {
+
+struct GuidanceConfig;
+
+struct GuidanceInput {
+  Time now{};
+  Duration dt{};
+  Mode mode{Mode::kStandby};
+  bool entered{false};            ///< The mode began in this cycle.
+  Estimate estimate;              ///< Usable or not: lost estimates are flown by standing still.
+  bool vehicle_flying{false};
+  const SensorFrame* sensors{};   ///< For look-at.
+  const MissionPlan* plan{};      ///< For AUTO; null: none.
+};
+
+struct GuidanceOutput {
+  bool engaged{false};
+  ExecutorOutput route;  ///< Not active: stand still.
+  VehicleAction action{VehicleAction::kNone};
+  bool reel_controller{false};
+};
+
+/// Real-time safe: no allocation, no locks, no exceptions.
+class Guidance {
+ public:
+  Guidance(const GuidanceConfig& config, const ExecutorConfig& executor, const PoleConfig& pole, const VehicleLimits& limits) noexcept;
+  Guidance(const Guidance&) = delete;
+  Guidance& operator=(const Guidance&) = delete;
+
+  [[nodiscard]] GuidanceOutput update(const GuidanceInput& in) noexcept;
+
+  /// kAtTarget, kTouchdown, kMissionDone and kMissionFailed, as of the last update.
+  [[nodiscard]] ConditionSet conditions() const noexcept;
+
+  [[nodiscard]] const ContactStack& contacts() const noexcept { return contacts_; }
+  /// Of the mission flown last, also after the mode has changed: a completed mission stays completed.
+  [[nodiscard]] const ExecutorStatus& mission() const noexcept { return mission_; }
+
+ private:
+  enum class Landing : std::uint8_t { kRetrace, kApproach, kDescend, kStopMotors };
+
+  void enter(const GuidanceInput& in) noexcept;
+  void fly(const GuidanceInput& in) noexcept;
+  void land(const GuidanceInput& in) noexcept;
+  bool goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& estimate) noexcept;
+  [[nodiscard]] bool onGround(const GuidanceInput& in) noexcept;
+  [[nodiscard]] VehicleAction paced(VehicleAction action, Time now) noexcept;
+
+  const GuidanceConfig& config_;
+  ContactStack contacts_;
+  MotionExecutor executor_;
+  ExecutorStatus mission_;
+  Mode mode_{Mode::kStandby};
+  bool under_way_{false};  ///< The mode's route has been started.
+  bool has_flown_{false};  ///< Since arming.
+  bool vehicle_flying_{false};
+  Landing landing_{Landing::kApproach};
+  double lowest_{0.0};    ///< Least height above home while descending [m].
+  Time lowest_since_{};   ///< When that was reached.
+  std::optional<Time> last_action_;
+};
+
+}  // namespace tautline

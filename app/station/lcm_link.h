@@ -1,0 +1,46 @@
+#pragma once
+
+/// @file
+/// The station's side of LCM: publishes finished bytes, takes commands and missions in without ever waiting.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <lcm/lcm-cpp.hpp>
+#include <tautline/mission_chunk_t.hpp>
+#include <tautline/operator_command_t.hpp>
+
+#include "app/station/operator_command.h"
+#include "app/station/telemetry.h"
+
+namespace tautline {
+
+class LcmLink final : public TelemetrySink {
+ public:
+  /// Joins LCM and subscribes; LCM's own reader thread starts here, so construct it before raising the loop's priority.
+  /// @throws InputError (exit code kTimeout) with the command that mends it. Not real-time safe: start-up only.
+  explicit LcmLink(const std::string& url);
+
+  bool publish(const char* channel, std::int64_t utime, std::span<const std::uint8_t> bytes) noexcept override;
+
+  /// Handles what has arrived until there is something for the core, at most a few messages. Never waits, never throws.
+  void poll() noexcept;
+
+  /// What the last poll() brought; at most one of the two.
+  [[nodiscard]] const std::optional<OperatorCommand>& command() const noexcept { return command_; }
+  [[nodiscard]] const tautline::mission_chunk_t* chunk() const noexcept { return chunk_ ? &*chunk_ : nullptr; }
+
+ private:
+  void onCommand(const lcm::ReceiveBuffer*, const std::string&, const tautline::operator_command_t* m);
+  void onChunk(const lcm::ReceiveBuffer*, const std::string&, const tautline::mission_chunk_t* m);
+
+  static constexpr int kMaxMessagesPerPoll = 8;
+  static constexpr int kQueueCapacity = 64;
+
+  lcm::LCM lcm_;
+  std::optional<OperatorCommand> command_;
+  std::optional<tautline::mission_chunk_t> chunk_;
+};
+
+}  // namespace tautline

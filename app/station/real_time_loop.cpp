@@ -1,0 +1,52 @@
+#include "app/station/real_time_loop.h"
+
+#include "common/clock.h"
+
+namespace tautline {
+namespace {
+
+constexpr Duration kStatisticsPeriod = std::chrono::seconds(1);
+constexpr int kParamsEvery = 10;  // statistics periods
+
+}  // namespace
+
+LoopSummary realTimeLoop(const LoopParts& parts, Duration period, const volatile std::sig_atomic_t& stop) {
+  LoopStatistics statistics;
+  StepInput in;
+  TickGrid grid(period, monotonicNow() + period);
+  Time next_statistics = grid.next();
+  int until_params = 0;
+
+  while (stop == 0) {
+    sleepUntil(grid.next());
+    in.now = monotonicNow();  // the one reading of the clock that the core sees
+    const Duration lateness = in.now - grid.next();
+
+    parts.device.read(in.now, in.sensors);
+    parts.lcm.poll();
+    in.command = parts.lcm.command();
+    in.chunk = parts.lcm.chunk();
+    const StepOutput& out = parts.station.step(in);
+    parts.device.write(in.now, out.command);
+    parts.telemetry.publish(in, out);
+
+    if (in.now >= next_statistics) {
+      next_statistics = in.now + kStatisticsPeriod;
+      parts.telemetry.publishLoop(in.now, period, statistics.snapshot(), parts.station.commandsRefused());
+      statistics.startWindow();
+      if (until_params-- == 0) {
+        parts.telemetry.publishParams(in.now);
+        until_params = kParamsEvery;
+      }
+    }
+
+    const Time done = monotonicNow();
+    statistics.record(lateness, done - in.now, grid.advance(done));
+    in.consecutive_overruns = static_cast<std::int32_t>(statistics.snapshot().consecutive_overruns);
+    if (parts.black_box != nullptr) parts.black_box->record(makeRecord(in, out, lateness, done - in.now));
+  }
+  parts.device.shutdown(monotonicNow());
+  return {statistics.snapshot()};
+}
+
+}  // namespace tautline

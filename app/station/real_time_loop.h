@@ -1,0 +1,33 @@
+#pragma once
+
+/// @file
+/// The fixed-rate loop around the core: wait, read, step, write, tell (docs/loop.md).
+
+#include <csignal>
+
+#include "app/station/black_box.h"
+#include "app/station/lcm_link.h"
+#include "app/station/station.h"
+#include "app/station/telemetry.h"
+#include "common/loop_timer.h"
+#include "drivers/device.h"
+
+namespace tautline {
+
+struct LoopParts {
+  Device& device;
+  LcmLink& lcm;
+  Station& station;
+  Telemetry& telemetry;
+  BlackBox* black_box;  ///< May be null.
+};
+
+struct LoopSummary {
+  LoopStatistics::Snapshot statistics;
+};
+
+/// Runs until `stop` is set, then sends the device's last words. Real-time safe after the first cycle: no allocation, no
+/// locks, no exceptions of ours; LCM's publish takes its own short lock.
+LoopSummary realTimeLoop(const LoopParts& parts, Duration period, const volatile std::sig_atomic_t& stop);
+
+}  // namespace tautline

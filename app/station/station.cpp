@@ -1,0 +1,200 @@
+#include "app/station/station.h"
+
+namespace tautline {
+namespace {
+
+bool isUsable(const Estimate& e) noexcept { return e.valid && e.health != EstimateHealth::kLost; }
+
+/// A condition that an operator hears of when it comes and when it goes.
+struct ToldCondition {
+  Condition condition;
+  EventCode came;
+  EventCode went;
+};
+constexpr std::array kToldConditions{
+    ToldCondition{Condition::kReelStale, EventCode::kSensorsStale, EventCode::kSensorsBack},
+    ToldCondition{Condition::kLinkLost, EventCode::kLinkLost, EventCode::kLinkBack},
+    ToldCondition{Condition::kLocalizationLost, EventCode::kLocalizationLost, EventCode::kLocalizationBack},
+    ToldCondition{Condition::kVehicleFault, EventCode::kVehicleFault, EventCode::kVehicleFaultCleared},
+};
+
+EventCode eventOf(MissionFailure failure) noexcept {
+  switch (failure) {
+    case MissionFailure::kWaypointTimeout: return EventCode::kWaypointTimeout;
+    case MissionFailure::kNoProgress: return EventCode::kNoProgress;
+    case MissionFailure::kBadContact: return EventCode::kBadContact;
+    case MissionFailure::kUnreachable: return EventCode::kUnreachable;
+    case MissionFailure::kNone: break;
+  }
+  return EventCode::kMissionCompleted;
+}
+
+}  // namespace
+
+Station::Station(const CoreConfig& config)
+    : config_(config),
+      localizer_(config_.localizer),
+      supervisor_(config_.supervisor),
+      guidance_(config_.guidance, config_.executor, config_.control.composite.pole, config_.limits),
+      controller_(makeController(config_.control)),
+      dead_zone_(config_.reel_dead_zone),
+      gate_(config_.gate, config_.limits) {}
+
+const StepOutput& Station::step(const StepInput& in) noexcept {
+  const Duration dt = last_step_ ? in.now - *last_step_ : Duration::zero();
+  if (!last_step_) localizer_.reset(config_.guidance.home_position_m, in.now);
+  last_step_ = in.now;
+  out_.event_count = 0;
+  out_.ack.reset();
+
+  // Sense: ages and ranges, then where the drone is.
+  const ConditionSet conditions_before = out_.conditions;
+  out_.anchor = guidance_.contacts().anchor();
+  out_.estimate = localizer_.update(in.now, in.sensors, last_command_, out_.anchor);
+  out_.conditions = assess(in, out_.estimate);
+  tellChanges(conditions_before);
+
+  // Decide: what the operator asks for, what the supervisor allows.
+  const Request request = takeCommand(in);
+  out_.supervision = supervisor_.step(in.now, out_.conditions, request);
+  if (in.command && !out_.ack) acknowledge(*in.command);
+  if (out_.supervision.changed) enterMode(in.now);
+
+  // Fly: where to, how, and the last gate.  Critical for safety: nothing may come between the gate and the override.
+  const MissionState mission_before = guidance_.mission().state;
+  const GuidanceOutput guidance = guidance_.update({.now = in.now,
+                                                    .dt = dt,
+                                                    .mode = out_.supervision.mode,
+                                                    .entered = out_.supervision.changed,
+                                                    .estimate = out_.estimate,
+                                                    .vehicle_flying = out_.conditions.has(Condition::kVehicleFlying),
+                                                    .sensors = &in.sensors,
+                                                    .plan = missions_.active()});
+  const VehicleCommand wanted = control(dt, guidance);
+  const VehicleCommand gated = gate_.apply(dt, wanted).command;
+  out_.command = override(gated);
+  last_command_ = out_.command;
+
+  // Tell.
+  out_.mission = guidance_.mission();
+  out_.contact_id = guidance_.contacts().activeId();
+  out_.mission_hash = missions_.loaded() != nullptr ? missions_.loaded()->hash : 0;
+  out_.mission_items = missions_.receivedWaypoints();
+  if (out_.mission.state != mission_before) tellMission(out_.mission);
+  return out_;
+}
+
+ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noexcept {
+  const SensorFrame& f = in.sensors;
+  const SensorHealth& health = localizer_.sensorHealth();
+  const auto unusable = [&](SensorStream stream) { return !health[stream].ok(); };
+  ConditionSet set = guidance_.conditions();
+  set.set(Condition::kReelStale, unusable(SensorStream::kReel));
+  set.set(Condition::kAnglesStale, unusable(SensorStream::kAngles));
+  set.set(Condition::kAttitudeStale, unusable(SensorStream::kAttitude));
+  set.set(Condition::kVehicleStale, unusable(SensorStream::kVehicle));
+  set.set(Condition::kLinkLost, !f.link.connected);
+  set.set(Condition::kLocalizationLost, !isUsable(estimate));
+  set.set(Condition::kVehicleFault, f.vehicle.sequence > 0 && f.vehicle.value.phase == VehiclePhase::kFault);
+  set.set(Condition::kVehicleFlying, f.vehicle.sequence > 0 && (f.vehicle.value.phase == VehiclePhase::kFlying ||
+                                                                f.vehicle.value.phase == VehiclePhase::kLanding));
+  set.set(Condition::kMissionLoaded, missions_.loaded() != nullptr);
+  set.set(Condition::kOverruns, in.consecutive_overruns >= config_.overruns_in_a_row);
+  return set;
+}
+
+/// What the supervisor is asked in this cycle; answers at once what never gets that far.
+Request Station::takeCommand(const StepInput& in) noexcept {
+  if (in.chunk != nullptr) {
+    const bool good = missions_.add(*in.chunk);
+    answer(in.chunk->session, in.chunk->sequence, good ? AckResult::kAccepted : AckResult::kBadMission, {});
+    out_.ack->detail = missions_.receivedWaypoints();
+  }
+  if (!in.command) return Request::kNone;
+  const OperatorCommand& c = *in.command;
+  if (c.request == Request::kNone || c.request > Request::kStop) {
+    answer(c.session, c.sequence, AckResult::kUnknown, {});
+    return Request::kNone;
+  }
+  // A command that is sent again because its answer was lost must not act twice.
+  if (last_acknowledged_.session == c.session && last_acknowledged_.sequence == c.sequence) {
+    out_.ack = last_acknowledged_;
+    return Request::kNone;
+  }
+  if (c.request == Request::kNavigate && (missions_.loaded() == nullptr || missions_.loaded()->hash != c.mission_hash)) {
+    answer(c.session, c.sequence, AckResult::kBadMission, {});
+    return Request::kNone;
+  }
+  return c.request;
+}
+
+void Station::acknowledge(const OperatorCommand& command) noexcept {
+  const SupervisorOutput& s = out_.supervision;
+  answer(command.session, command.sequence, s.request_taken ? AckResult::kAccepted : AckResult::kRefused, s.refusal);
+}
+
+void Station::answer(std::int64_t session, std::int32_t sequence, AckResult result, ConditionSet reasons) noexcept {
+  out_.ack = CommandAck{session, sequence, result, reasons, 0};
+  last_acknowledged_ = *out_.ack;
+  if (result != AckResult::kAccepted) ++commands_refused_;
+}
+
+void Station::enterMode(Time now) noexcept {
+  const Mode mode = out_.supervision.mode;
+  tell({EventCode::kModeChanged, mode, out_.supervision.reasons});
+  controller_->reset();
+  dead_zone_.reset();
+  if (mode == Mode::kAuto) missions_.activate();
+  if (mode == Mode::kStandby) localizer_.reset(config_.guidance.home_position_m, now);
+}
+
+/// Rates for the route, by the configured law; standing still where there is none or the law cannot act.
+VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noexcept {
+  VehicleCommand command;
+  command.engaged = guidance.engaged;
+  command.action = guidance.action;
+  command.reel_controller = guidance.reel_controller;
+  if (!guidance.route.active) return command;
+  const RateCommand rates = controller_->update(dt, guidance.route.control);
+  if (!rates.ok) return command;
+  command.length_rate = dead_zone_.compensate(dt, rates.length_rate);
+  command.elevation_rate = rates.elevation_rate;
+  command.azimuth_rate = rates.azimuth_rate;
+  command.yaw_rate = guidance.route.yaw_rate;
+  command.gimbal_pitch_rate = guidance.route.gimbal_pitch_rate;
+  return command;
+}
+
+/// The supervisor's last word: no rates without fresh tether sensors, link and localization; none on the ground.
+VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
+  constexpr ConditionSet kStandStill{Condition::kReelStale, Condition::kAnglesStale, Condition::kLinkLost,
+                                     Condition::kVehicleStale, Condition::kLocalizationLost};
+  const Mode mode = out_.supervision.mode;
+  const bool may_move = mode == Mode::kTakeoff || mode == Mode::kHold || mode == Mode::kAuto || mode == Mode::kLand;
+  if (may_move && !out_.conditions.any(kStandStill)) return gated;
+  gate_.reset();
+  VehicleCommand still;
+  still.engaged = gated.engaged;
+  still.action = gated.action;
+  still.reel_controller = gated.reel_controller;
+  return still;
+}
+
+void Station::tell(StationEvent event) noexcept {
+  if (out_.event_count < static_cast<int>(out_.events.size())) out_.events[static_cast<std::size_t>(out_.event_count++)] = event;
+}
+
+void Station::tellChanges(ConditionSet before) noexcept {
+  if (supervisor_.mode() == Mode::kStandby) return;  // on the ground `tautline status` says it
+  for (const ToldCondition& t : kToldConditions) {
+    const bool is = out_.conditions.has(t.condition);
+    if (is != before.has(t.condition)) tell({is ? t.came : t.went, {}, {}});
+  }
+  if (out_.conditions.has(Condition::kOverruns) && !before.has(Condition::kOverruns)) tell({EventCode::kLoopOverruns, {}, {}});
+}
+
+void Station::tellMission(const ExecutorStatus& mission) noexcept {
+  if (mission.state == MissionState::kCompleted || mission.state == MissionState::kFailed) tell({eventOf(mission.failure), {}, {}});
+}
+
+}  // namespace tautline

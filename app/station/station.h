@@ -1,0 +1,94 @@
+#pragma once
+
+/// @file
+/// The station's core: one cycle from what the sensors say to what the vehicle is told (docs/loop.md). Pure: no clock, no
+/// file, no socket, no log. Around it app/station puts drivers and LCM, app/bench puts the plant; the same input gives the
+/// same output, always.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include <tautline/mission_chunk_t.hpp>
+
+#include "app/station/events.h"
+#include "app/station/guidance.h"
+#include "app/station/mission_store.h"
+#include "app/station/operator_command.h"
+#include "app/station/station_config.h"
+#include "common/estimate.h"
+#include "common/vehicle.h"
+#include "control/command_gate.h"
+#include "control/controller.h"
+#include "control/reel_dead_zone.h"
+#include "control/supervisor.h"
+#include "estimation/localizer.h"
+
+namespace tautline {
+
+/// All that a cycle sees.
+struct StepInput {
+  Time now{};
+  SensorFrame sensors;
+  std::optional<OperatorCommand> command;
+  const tautline::mission_chunk_t* chunk{nullptr};  ///< A piece of a mission, or none; used during the call only.
+  std::int32_t consecutive_overruns{0};             ///< Of the loop, as of the last cycle.
+};
+
+/// All that a cycle says.
+struct StepOutput {
+  VehicleCommand command;
+  Estimate estimate;
+  Anchor anchor;
+  int contact_id{kReelContact};
+  ConditionSet conditions;
+  SupervisorOutput supervision;
+  ExecutorStatus mission;
+  std::uint64_t mission_hash{0};
+  int mission_items{0};  ///< Waypoints received.
+  std::optional<CommandAck> ack;
+  std::array<StationEvent, 8> events{};
+  int event_count{0};
+};
+
+class Station {
+ public:
+  /// Not real-time safe: start-up only.
+  explicit Station(const CoreConfig& config);
+
+  /// One cycle. `in.now` must not go back. Real-time safe: no allocation, no locks, no exceptions.
+  [[nodiscard]] const StepOutput& step(const StepInput& in) noexcept;
+
+  /// Commands refused since start.
+  [[nodiscard]] std::int64_t commandsRefused() const noexcept { return commands_refused_; }
+
+ private:
+  [[nodiscard]] ConditionSet assess(const StepInput& in, const Estimate& estimate) noexcept;
+  [[nodiscard]] Request takeCommand(const StepInput& in) noexcept;
+  void acknowledge(const OperatorCommand& command) noexcept;
+  void answer(std::int64_t session, std::int32_t sequence, AckResult result, ConditionSet reasons) noexcept;
+  void enterMode(Time now) noexcept;
+  [[nodiscard]] VehicleCommand control(Duration dt, const GuidanceOutput& guidance) noexcept;
+  [[nodiscard]] VehicleCommand override(const VehicleCommand& gated) noexcept;
+  void tell(StationEvent event) noexcept;
+  void tellChanges(ConditionSet before) noexcept;
+  void tellMission(const ExecutorStatus& mission) noexcept;
+
+  CoreConfig config_;
+  Localizer localizer_;
+  Supervisor supervisor_;
+  Guidance guidance_;
+  std::unique_ptr<Controller> controller_;
+  ReelDeadZone dead_zone_;
+  CommandGate gate_;
+  MissionStore missions_;
+
+  std::optional<Time> last_step_;
+  VehicleCommand last_command_;
+  StepOutput out_;
+  CommandAck last_acknowledged_;
+  std::int64_t commands_refused_{0};
+};
+
+}  // namespace tautline

@@ -1,0 +1,110 @@
+#pragma once
+
+/// @file
+/// Everything that can be set on the station, in one file (config/station.toml); each part documents its own fields.
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include "common/fields.h"
+#include "common/realtime.h"
+#include "common/vehicle.h"
+#include "control/command_gate.h"
+#include "control/control_config.h"
+#include "control/motion_executor.h"
+#include "control/reel_dead_zone.h"
+#include "control/supervisor.h"
+#include "control/vehicle_limits.h"
+#include "drivers/fotokite_device.h"
+#include "drivers/serial_port.h"
+#include "estimation/localizer.h"
+
+namespace tautline {
+
+/// Take-off and landing.
+struct GuidanceConfig {
+  Eigen::Vector3d home_position_m{0.7, -0.2, 0.4};
+  double takeoff_height_m{0.9};
+  double takeoff_radius_m{0.3};
+  double approach_height_m{0.5};
+  double travel_speed_mps{0.3};
+  double descent_speed_mps{0.15};
+  double touchdown_height_m{0.06};
+  double action_period_s{1.0};
+
+  template <class Visitor>
+  void fields(Visitor& v) {
+    v.field("home_position_m", home_position_m, Range{-1000, 1000},
+            "drone's tether attachment when parked, from the reel outlet; a scene's start replaces it");
+    v.field("takeoff_height_m", takeoff_height_m, Range{0.2, 10}, "height of the first hover above home");
+    v.field("takeoff_radius_m", takeoff_radius_m, Range{0.05, 2}, "take-off ends this close to the hover point");
+    v.field("approach_height_m", approach_height_m, Range{0.1, 10}, "landing descends from this height above home");
+    v.field("travel_speed_mps", travel_speed_mps, Range{0.01, 5}, "speed to the hover point and back home");
+    v.field("descent_speed_mps", descent_speed_mps, Range{0.01, 2}, "speed of the last descent");
+    v.field("touchdown_height_m", touchdown_height_m, Range{0.0, 1}, "motors stop below this height above home");
+    v.field("action_period_s", action_period_s, Range{0.1, 10}, "take-off and motor stop are repeated this often");
+  }
+};
+
+/// The pure core.
+struct CoreConfig {
+  GuidanceConfig guidance;
+  LocalizerConfig localizer;
+  SupervisorConfig supervisor;
+  ExecutorConfig executor;
+  ControlConfig control;
+  VehicleLimits limits;
+  CommandGateConfig gate;
+  ReelDeadZoneConfig reel_dead_zone;
+  int overruns_in_a_row{5};
+
+  template <class Visitor>
+  void fields(Visitor& v) {
+    v.section("guidance", guidance);
+    v.section("localizer", localizer);
+    v.section("supervisor", supervisor);
+    v.section("executor", executor);
+    v.section("control", control);
+    v.section("limits", limits);
+    v.section("gate", gate);
+    v.section("reel_dead_zone", reel_dead_zone);
+    v.field("overruns_in_a_row", overruns_in_a_row, Range{1, 1000}, "this many overruns in a row end a mission");
+  }
+};
+
+enum class RealTimePolicy : std::uint8_t {
+  kIgnore,   ///< Go on without what the machine does not allow, and say so.
+  kEnforce,  ///< Refuse to start.
+};
+inline constexpr std::array<EnumName<RealTimePolicy>, 2> kRealTimePolicyNames{
+    {{RealTimePolicy::kIgnore, "ignore"}, {RealTimePolicy::kEnforce, "enforce"}}};
+
+struct StationConfig {
+  RunMode run_mode{RunMode::kReal};
+  double loop_rate_hz{100.0};
+  double telemetry_rate_hz{20.0};
+  std::string black_box{"/dev/shm/tautline-station.blackbox"};
+  RealTimePolicy realtime_policy{RealTimePolicy::kIgnore};
+  int realtime_priority{50};
+  int realtime_cpu{-1};
+  SerialConfig serial;
+  FotokiteConfig fotokite;
+  CoreConfig core;
+
+  template <class Visitor>
+  void fields(Visitor& v) {
+    v.choice("run_mode", run_mode, kRunModeNames, "what this station is part of");
+    v.field("loop_rate_hz", loop_rate_hz, Range{10, 1000}, "cycles a second");
+    v.field("telemetry_rate_hz", telemetry_rate_hz, Range{1, 1000}, "state messages a second");
+    v.field("black_box", black_box, "file of the last cycles; empty: none");
+    v.choice("realtime_policy", realtime_policy, kRealTimePolicyNames, "what to do where the machine refuses real-time rights");
+    v.field("realtime_priority", realtime_priority, Range{0, 98}, "SCHED_FIFO priority; 0 leaves the scheduler alone");
+    v.field("realtime_cpu", realtime_cpu, Range{-1, 1023}, "processor of the loop; -1: any");
+    v.section("serial", serial);
+    v.section("fotokite", fotokite);
+    v.section("core", core);
+  }
+};
+
+}  // namespace tautline

@@ -1,0 +1,299 @@
+#include "app/station/telemetry.h"
+
+#include <cmath>
+
+#include "lcmtypes/channels.h"
+
+namespace tautline {
+namespace {
+
+void put(double (&out)[3], const Eigen::Vector3d& v) noexcept {
+  for (int i = 0; i < 3; ++i) out[i] = v[i];
+}
+
+void put(double (&wxyz)[4], const Eigen::Quaterniond& q) noexcept {
+  wxyz[0] = q.w();
+  wxyz[1] = q.x();
+  wxyz[2] = q.y();
+  wxyz[3] = q.z();
+}
+
+template <class T>
+double ageOf(const Sample<T>& sample, Time now) noexcept {
+  return sample.sequence == 0 ? -1.0 : toSeconds(now - sample.time);
+}
+
+template <class T>
+std::int64_t timeOf(const Sample<T>& sample) noexcept {
+  return sample.time.time_since_epoch().count();
+}
+
+/// Heading of the body about +y.
+double yawOf(const Eigen::Quaterniond& R_WB) noexcept {
+  const Eigen::Vector3d forward = R_WB * Eigen::Vector3d::UnitX();
+  return std::atan2(-forward.z(), forward.x());
+}
+
+template <class Int, class T>
+Int as(T value) noexcept {
+  return static_cast<Int>(value);
+}
+
+}  // namespace
+
+Telemetry::Telemetry(TelemetrySink& sink, RunMode run_mode, Duration unix_offset, Duration state_period)
+    : sink_(sink), run_mode_(run_mode), unix_offset_(unix_offset), state_period_(state_period) {
+  for (std::string* text : {&event_.text, &event_.reaction, &event_.remedy}) text->reserve(256);
+}
+
+template <class Message>
+void Telemetry::send(const char* channel, Message& message, Time now, std::span<std::uint8_t> buffer) noexcept {
+  message.utime = toMicroseconds(now + unix_offset_);
+  const int size = message.encode(buffer.data(), 0, as<int>(buffer.size()));
+  if (size < 0 || !sink_.publish(channel, message.utime, buffer.first(as<std::size_t>(size)))) ++errors_;
+}
+
+void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
+  sendInput(in);
+  if (out.ack) {
+    tautline::command_ack_t ack{};
+    ack.session = out.ack->session;
+    ack.sequence = out.ack->sequence;
+    ack.result = as<std::int8_t>(out.ack->result);
+    ack.reasons = as<std::int32_t>(out.ack->reasons.bits());
+    ack.detail = out.ack->detail;
+    send(channel::kCommandAck, ack, in.now);
+  }
+  for (int i = 0; i < out.event_count; ++i) sendEvent(in.now, out.events[as<std::size_t>(i)]);
+
+  const bool due = in.now >= next_state_;
+  if (due || out.command.action != VehicleAction::kNone) sendCommand(in.now, out.command);
+  // A change of mode is told at once, so that clients need not wait for the next round.
+  if (due || out.supervision.changed) {
+    sendStation(in.now, out);
+    sendMission(in.now, out);
+  }
+  if (!due) return;
+  next_state_ = in.now + state_period_;
+  sendTether(in, out);
+  sendVehicle(in);
+  sendEstimate(in.now, out);
+}
+
+void Telemetry::sendInput(const StepInput& in) noexcept {
+  const SensorFrame& f = in.sensors;
+  tautline::station_input_t m{};
+  m.now_ns = in.now.time_since_epoch().count();
+  m.has_command = in.command ? 1 : 0;
+  if (in.command) {
+    m.command_session = in.command->session;
+    m.command_sequence = in.command->sequence;
+    m.command_verb = as<std::int8_t>(in.command->request);
+    m.command_mission_hash = as<std::int64_t>(in.command->mission_hash);
+  }
+  m.chunk_session = in.chunk != nullptr ? in.chunk->session : 0;
+  m.chunk_sequence = in.chunk != nullptr ? in.chunk->sequence : 0;
+  m.loop_overruns = in.consecutive_overruns;
+
+  m.reel_time_ns = timeOf(f.reel);
+  m.reel_sequence = as<std::int32_t>(f.reel.sequence);
+  m.reel_valid = f.reel.valid;
+  m.reel_counts = f.reel.value.counts;
+  m.reel_length_m = f.reel.value.length;
+  m.reel_has_tension = f.reel.value.tension.has_value();
+  m.reel_tension_n = f.reel.value.tension.value_or(0.0);
+
+  m.angles_time_ns = timeOf(f.angles);
+  m.angles_sequence = as<std::int32_t>(f.angles.sequence);
+  m.angles_valid = f.angles.valid;
+  m.elevation_rad = f.angles.value.theta;
+  m.azimuth_rad = f.angles.value.phi;
+  m.has_altitude = f.angles.value.altitude.has_value();
+  m.altitude_m = f.angles.value.altitude.value_or(0.0);
+
+  m.attitude_time_ns = timeOf(f.attitude);
+  m.attitude_sequence = as<std::int32_t>(f.attitude.sequence);
+  m.attitude_valid = f.attitude.valid;
+  put(m.attitude_wxyz, f.attitude.value.R_WB);
+
+  m.gimbal_time_ns = timeOf(f.gimbal);
+  m.gimbal_sequence = as<std::int32_t>(f.gimbal.sequence);
+  m.gimbal_valid = f.gimbal.valid;
+  m.gimbal_pitch_rad = f.gimbal.value.pitch;
+
+  m.vehicle_time_ns = timeOf(f.vehicle);
+  m.vehicle_sequence = as<std::int32_t>(f.vehicle.sequence);
+  m.vehicle_valid = f.vehicle.valid;
+  m.vehicle_phase = as<std::int8_t>(f.vehicle.value.phase);
+  m.flight_mode = f.vehicle.value.flight_mode;
+  m.vehicle_flags = f.vehicle.value.flags;
+  m.backup_battery_v = f.vehicle.value.backup_battery_voltage;
+
+  m.ground_time_ns = timeOf(f.ground);
+  m.ground_sequence = as<std::int32_t>(f.ground.sequence);
+  m.ground_valid = f.ground.valid;
+  m.ground_mode = f.ground.value.mode;
+  m.ground_battery_v = f.ground.value.battery_voltage;
+
+  m.link_connected = f.link.connected;
+  m.link_bytes_in = as<std::int64_t>(f.link.bytes_in);
+  m.link_bytes_out = as<std::int64_t>(f.link.bytes_out);
+  m.link_lines_ok = as<std::int32_t>(f.link.lines_ok);
+  m.link_lines_bad = as<std::int32_t>(f.link.lines_bad);
+  m.link_bytes_dropped = as<std::int32_t>(f.link.bytes_dropped);
+  m.link_reconnects = as<std::int32_t>(f.link.reconnects);
+  send(channel::kStationInput, m, in.now);
+}
+
+void Telemetry::sendStation(Time now, const StepOutput& out) noexcept {
+  tautline::station_state_t m{};
+  m.run_mode = as<std::int8_t>(run_mode_);
+  m.mode = as<std::int8_t>(out.supervision.mode);
+  m.conditions = as<std::int32_t>(out.conditions.bits());
+  m.reasons = as<std::int32_t>(out.supervision.reasons.bits());
+  m.time_in_mode_us = std::chrono::duration_cast<std::chrono::microseconds>(out.supervision.time_in_mode).count();
+  m.mission_hash = as<std::int64_t>(out.mission_hash);
+  m.mission_items = out.mission_items;
+  send(channel::kStationState, m, now);
+}
+
+void Telemetry::sendTether(const StepInput& in, const StepOutput& out) noexcept {
+  const SensorFrame& f = in.sensors;
+  tautline::tether_state_t m{};
+  m.encoder_counts = f.reel.value.counts;
+  m.length_meas_m = f.reel.value.length;
+  m.elevation_meas_rad = f.angles.value.theta;
+  m.azimuth_meas_rad = f.angles.value.phi;
+  m.reel_age_s = ageOf(f.reel, in.now);
+  m.angles_age_s = ageOf(f.angles, in.now);
+  m.length_free_m = out.estimate.L_free;
+  m.length_static_m = out.anchor.L_static;
+  m.elevation_rad = out.estimate.theta_tangent;
+  m.azimuth_rad = out.estimate.phi;
+  m.tension_n = out.estimate.T;
+  m.tension_sigma_n = out.estimate.sigma_T;
+  m.contact_count = as<std::int16_t>(out.anchor.contact_count);
+  m.contact_id = as<std::int16_t>(out.contact_id);
+  put(m.anchor_m, out.anchor.p_WA);
+  send(channel::kTetherState, m, in.now);
+}
+
+void Telemetry::sendVehicle(const StepInput& in) noexcept {
+  const SensorFrame& f = in.sensors;
+  tautline::vehicle_state_t m{};
+  m.phase = as<std::int8_t>(f.vehicle.value.phase);
+  m.flight_mode = f.vehicle.value.flight_mode;
+  m.flags = f.vehicle.value.flags;
+  put(m.attitude_wxyz, f.attitude.value.R_WB);
+  m.yaw_rad = yawOf(f.attitude.value.R_WB);
+  m.gimbal_pitch_rad = f.gimbal.value.pitch;
+  m.altitude_m = f.angles.value.altitude.value_or(0.0);
+  m.ground_battery_v = f.ground.value.battery_voltage;
+  m.backup_battery_v = f.vehicle.value.backup_battery_voltage;
+  m.status_age_s = ageOf(f.vehicle, in.now);
+  m.link_connected = f.link.connected;
+  m.link_bytes_in = as<std::int64_t>(f.link.bytes_in);
+  m.link_bytes_out = as<std::int64_t>(f.link.bytes_out);
+  m.link_lines_ok = as<std::int32_t>(f.link.lines_ok);
+  m.link_lines_bad = as<std::int32_t>(f.link.lines_bad);
+  m.link_bytes_dropped = as<std::int32_t>(f.link.bytes_dropped);
+  m.link_reconnects = as<std::int32_t>(f.link.reconnects);
+  send(channel::kVehicleState, m, in.now);
+}
+
+void Telemetry::sendEstimate(Time now, const StepOutput& out) noexcept {
+  const Estimate& e = out.estimate;
+  tautline::estimate_t m{};
+  m.valid = e.valid;
+  m.health = as<std::int8_t>(e.health);
+  put(m.position_m, e.p_WD);
+  put(m.velocity_mps, e.v_WD);
+  for (int row = 0; row < 3; ++row) {
+    for (int col = 0; col < 3; ++col) m.position_cov_m2[3 * row + col] = e.P_position(row, col);
+  }
+  m.tension_n = e.T;
+  m.tension_sigma_n = e.sigma_T;
+  m.reel_scale = e.reel_scale;
+  m.reel_scale_sigma = e.sigma_reel_scale;
+  m.elevation_bias_rad = e.elevation_bias;
+  m.azimuth_zero_rad = e.azimuth_zero;
+  m.nis = e.nis;
+  send(channel::kEstimate, m, now);
+}
+
+void Telemetry::sendCommand(Time now, const VehicleCommand& c) noexcept {
+  tautline::command_t m{};
+  m.engaged = c.engaged;
+  m.length_rate_mps = c.length_rate;
+  m.elevation_rate_radps = c.elevation_rate;
+  m.azimuth_rate_radps = c.azimuth_rate;
+  m.yaw_rate_radps = c.yaw_rate;
+  m.gimbal_pitch_rate_radps = c.gimbal_pitch_rate;
+  m.reel_controller = c.reel_controller;
+  m.action = as<std::int8_t>(c.action);
+  send(channel::kCommand, m, now);
+}
+
+void Telemetry::sendMission(Time now, const StepOutput& out) noexcept {
+  const ExecutorStatus& s = out.mission;
+  tautline::mission_status_t m{};
+  m.mission_hash = as<std::int64_t>(out.mission_hash);
+  m.state = as<std::int8_t>(s.state);
+  m.failure = as<std::int8_t>(s.failure);
+  m.waypoint = s.waypoint;
+  m.waypoint_count = s.waypoint_count;
+  put(m.target_m, s.p_WTarget);
+  put(m.segment_start_m, s.p_WSegmentStart);
+  m.distance_m = s.distance;
+  m.cross_track_m = s.cross_track;
+  m.acceptance_radius_m = s.acceptance_radius;
+  m.target_length_m = s.target_length;
+  m.target_elevation_rad = s.target_elevation;
+  m.target_azimuth_rad = s.target_azimuth;
+  m.time_on_waypoint_s = s.time_on_waypoint;
+  send(channel::kMissionStatus, m, now);
+}
+
+void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
+  const EventText& text = textOf(event.code);
+  event_.severity = as<std::int8_t>(text.severity);
+  event_.code = as<std::int32_t>(event.code);
+  // assign() and append() stay inside the reserved capacity: no allocation.
+  event_.text.assign(text.text);
+  if (event.code == EventCode::kModeChanged) {
+    event_.text.append(nameOf(event.mode, kModeNames));
+    for (const auto& entry : kConditionNames) {
+      if (event.reasons.has(entry.value)) event_.text.append(" ").append(entry.name);
+    }
+  }
+  event_.reaction.assign(text.reaction);
+  event_.remedy.assign(text.remedy);
+  send(channel::kEvent, event_, now);
+}
+
+void Telemetry::publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s, std::int64_t commands_refused) noexcept {
+  tautline::loop_stats_t m{};
+  m.period_s = toSeconds(period);
+  m.cycles = s.cycles;
+  m.overruns = s.overruns;
+  m.skipped_periods = s.skipped_periods;
+  m.lateness_mean_s = s.lateness_mean;
+  m.lateness_max_s = s.lateness_max;
+  m.work_mean_s = s.work_mean;
+  m.work_max_s = s.work_max;
+  m.work_max_ever_s = s.work_max_ever;
+  m.publish_errors = errors_;
+  m.commands_refused = commands_refused;
+  send(channel::kLoopStats, m, now);
+}
+
+void Telemetry::setParams(const std::string& program, const std::string& version, const std::string& toml) {
+  params_.program = program;
+  params_.version = version;
+  params_.toml = toml;
+  params_buffer_.resize(as<std::size_t>(params_.getEncodedSize()));
+}
+
+void Telemetry::publishParams(Time now) noexcept { send(channel::kParams, params_, now, params_buffer_); }
+
+}  // namespace tautline

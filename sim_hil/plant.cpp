@@ -1,0 +1,174 @@
+#include "sim_hil/plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/error.h"
+
+namespace tautline::sim {
+namespace {
+
+constexpr double kGravity = 9.81;
+constexpr int kStepsPerAirUpdate = 10;
+constexpr double kDefaultFoot = 0.1;     // [m]
+constexpr double kSameContact = 0.05;    // contacts nearer than this on one obstacle are one [m]
+constexpr double kOnGround = 0.01;       // attachment this near its parking height stands [m]
+
+/// Height of the attachment over the ground when parked, from the scene's start.
+double footOf(const Obstacles& obstacles, const Eigen::Vector3d& start) {
+  return std::clamp(start.y() - obstacles.groundBelow(start), 0.02, 0.3);
+}
+
+Eigen::Vector3d startOf(const Scene& world) {
+  return world.start.value_or(Eigen::Vector3d(0.0, world.floor + kDefaultFoot, 1.0));
+}
+
+/// Stands on its feet, exactly.
+Eigen::Vector3d standing(const Obstacles& obstacles, Eigen::Vector3d start) {
+  start.y() = obstacles.groundBelow(start) + footOf(obstacles, start);
+  return start;
+}
+
+}  // namespace
+
+Plant::Plant(const SimConfig& config, const Scene& world, std::uint64_t seed)
+    : Plant(config, Obstacles(world), startOf(world), seed) {
+  if (const auto hit = firstHit(Eigen::Vector3d::Zero(), p_start_, world)) {
+    throw InputError({.file = {},
+                      .line = 0,
+                      .key = "start_m",
+                      .problem = "\"" + hit->obstacle + "\" stands between the reel and the start",
+                      .allowed = "a start in straight sight of the reel",
+                      .remedy = "move the start or the reel of scene \"" + world.name + "\""});
+  }
+}
+
+Plant::Plant(const SimConfig& config, Obstacles obstacles, const Eigen::Vector3d& start,
+             std::uint64_t seed)
+    : config_(config),
+      step_(fromSeconds(config.step)),
+      h_(toSeconds(step_)),
+      obstacles_(std::move(obstacles)),
+      random_(seed),
+      p_start_(standing(obstacles_, start)),
+      foot_(footOf(obstacles_, start)),
+      ground_(obstacles_.groundBelow(p_start_)),
+      tether_(config.tether, p_start_, p_start_.norm() * (1.0 + config.start_slack)),
+      reel_(config.reel, tether_.length()),
+      vehicle_(config.vehicle),
+      wind_(config.wind),
+      sensors_(config.sensors, SensorInput{reel_.counts(), polarOf(p_start_),
+                                           Eigen::Quaterniond::Identity(), 0.0}) {
+  updateTruth();
+}
+
+void Plant::step() noexcept {
+  if (air_countdown_-- == 0) {
+    stepAir();
+    air_countdown_ = kStepsPerAirUpdate - 1;
+  }
+  const Eigen::Vector3d v_before = truth_.v_WD;
+  reel_.step(h_, truth_.reel_tension);
+
+  VehicleSense sense;
+  sense.bias = {config_.sensors.elevation_bias, config_.sensors.azimuth_bias};
+  sense.tangent = {truth_.tangent_elevation + sense.bias.elevation,
+                   truth_.tangent_azimuth + sense.bias.azimuth};
+  sense.tension = truth_.tension;
+  sense.v_WD = truth_.v_WD;
+  sense.length = truth_.length;
+  sense.length_rate = reel_.rate();
+  sense.on_ground = truth_.on_ground;
+  vehicle_.step(h_, sense);
+
+  EndLoad end;
+  end.mass = config_.vehicle.mass;
+  end.force = vehicle_.thrust() - Eigen::Vector3d(0.0, kGravity * end.mass, 0.0);
+  end.drag = config_.vehicle.drag;
+  end.ground = ground_ + foot_;
+  tether_.step(h_, reel_.length(), end, wind_.velocity(), obstacles_);
+
+  truth_.time += step_;
+  updateTruth();
+  checkCrash(v_before);
+  sensors_.step(truth_.time, sensorInput(), random_);
+}
+
+void Plant::stepAir() noexcept {
+  ground_ = obstacles_.groundBelow(truth_.p_WD);
+  const double clearance = std::fmin(obstacles_.clearance(truth_.p_WD, true),
+                                     truth_.p_WD.y() - obstacles_.floor());
+  wind_.step(kStepsPerAirUpdate * h_, clearance, random_);
+}
+
+void Plant::checkCrash(const Eigen::Vector3d& v_before) noexcept {
+  if (truth_.crashed) return;
+  const bool was_on_ground = truth_.on_ground;
+  const bool fell = truth_.time > Time{} + step_ && tether_.groundForce() > 0.0 &&
+                    -v_before.y() > config_.vehicle.survivable_impact;
+  if (fell) crash(CrashReason::kHardLanding);
+  if (was_on_ground) return;
+  const double radius = config_.vehicle.radius;
+  if (obstacles_.touches(truth_.p_WD, radius, foot_)) {
+    crash(CrashReason::kObstacle);
+  } else if (obstacles_.hasRoom()) {
+    const Aabb& room = obstacles_.room();
+    const Eigen::Vector3d& p = truth_.p_WD;
+    const bool inside = p.x() - radius >= room.min.x() && p.x() + radius <= room.max.x() &&
+                        p.z() - radius >= room.min.z() && p.z() + radius <= room.max.z() &&
+                        p.y() + radius <= room.max.y();
+    if (!inside) crash(CrashReason::kRoom);
+  }
+}
+
+void Plant::crash(CrashReason reason) noexcept {
+  truth_.crashed = true;
+  truth_.crash_reason = reason;
+  vehicle_.stopMotors();
+  truth_.motors_on = false;
+}
+
+void Plant::updateTruth() noexcept {
+  const int last = tether_.linkCount();
+  truth_.p_WD = tether_.position(last);
+  truth_.v_WD = tether_.velocity(last);
+  const Eigen::Vector3d pull = tether_.endTension();
+  const Polar tangent = polarOf(pull);
+  truth_.tension = pull.norm();
+  truth_.reel_tension = tether_.reelTension();
+  truth_.length = reel_.length();
+  truth_.reel_scale = reel_.scale();
+  truth_.tangent_elevation = tangent.elevation;
+  truth_.tangent_azimuth = tangent.azimuth;
+  truth_.setpoint_elevation = vehicle_.setpoint().elevation;
+  truth_.setpoint_azimuth = vehicle_.setpoint().azimuth;
+  truth_.yaw = vehicle_.yaw();
+  truth_.on_ground = truth_.p_WD.y() < ground_ + foot_ + kOnGround;
+  truth_.motors_on = vehicle_.motorsOn();
+  truth_.gust = wind_.velocity();
+  updateContacts();
+}
+
+void Plant::updateContacts() noexcept {
+  truth_.contact_count = 0;
+  truth_.p_WA.setZero();
+  int last_obstacle = -1;
+  for (const TetherContact& c : tether_.contacts()) {
+    const int obstacle = obstacles_.solids()[static_cast<std::size_t>(c.solid)].obstacle;
+    const Eigen::Vector3d p = tether_.contactPoint(c);
+    const bool same = obstacle == last_obstacle && (p - truth_.p_WA).norm() < kSameContact;
+    if (!same) ++truth_.contact_count;
+    truth_.p_WA = p;
+    last_obstacle = obstacle;
+  }
+}
+
+SensorInput Plant::sensorInput() const noexcept {
+  return {reel_.counts(),
+          {truth_.tangent_elevation, truth_.tangent_azimuth},
+          vehicle_.attitude(),
+          truth_.p_WD.y() - p_start_.y()};
+}
+
+}  // namespace tautline::sim

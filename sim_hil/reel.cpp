@@ -1,0 +1,41 @@
+#include "sim_hil/reel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/fotokite_protocol.h"
+
+namespace tautline::sim {
+
+Reel::Reel(const ReelConfig& config, double length) noexcept
+    : config_(config), length_(std::clamp(length, config.min_length, config.max_length)) {}
+
+void Reel::command(double counts_per_second) noexcept {
+  const double limit = fotokite::kMaxReelRate;
+  double rate = std::isnan(counts_per_second) ? 0.0 : std::clamp(counts_per_second, -limit, limit);
+  const bool dead =
+      std::abs(rate - fotokite::kDeadZoneCentre) < 0.5 * fotokite::kDeadZoneWidth;
+  if (dead) rate = 0.0;
+  commanded_ = rate * metresPerCount();
+}
+
+void Reel::step(double h, double tension) noexcept {
+  constexpr double kSlipSpeed = 0.5;  // of a drive that gives way, per newton too much [m/s/N]
+  const double wanted = locked_ ? 0.0 : commanded_;
+  const double lagged = rate_ + (wanted - rate_) * (1.0 - std::exp(-h / std::fmax(config_.lag, h)));
+  const double change = config_.max_acceleration * h;
+  rate_ = std::clamp(lagged, rate_ - change, rate_ + change);
+  if (std::abs(rate_) < 1e-6) rate_ = 0.0;
+  const double slip = kSlipSpeed * std::fmax(0.0, tension - config_.slip_tension);
+  const double before = length_;
+  length_ = std::clamp(length_ + h * (rate_ + slip), config_.min_length, config_.max_length);
+  if (slip == 0.0) rate_ = (length_ - before) / h;  // an end stop stops the drum
+}
+
+std::int64_t Reel::counts() const noexcept {
+  return std::llround(std::floor((length_ - config_.power_on_length) / metresPerCount()));
+}
+
+double Reel::metresPerCount() const noexcept { return config_.metres_per_count * config_.scale; }
+
+}  // namespace tautline::sim
