@@ -13,7 +13,8 @@ std::unique_ptr<Controller> makeController(const ControlConfig& config) {
     case Law::kVelocity:
       return std::make_unique<VelocityLaw>(config.velocity);
   }
-  TAUTLINE_CHECK(!"Law outside its enumeration");
+  constexpr bool kLawIsKnown = false;
+  TAUTLINE_CHECK(kLawIsKnown);
   return nullptr;
 }
 

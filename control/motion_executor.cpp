@@ -18,8 +18,7 @@ MotionExecutor::MotionExecutor(const ExecutorConfig& config, const PoleConfig& p
                                const VehicleLimits& limits, ContactStack& contacts) noexcept
     : config_(config), limits_(limits), pole_(poleCylinder(pole, limits)), contacts_(contacts) {}
 
-// Requests
-// -------------------------------------------------------------------------------------------------------------
+// Requests ---------------------------------------------------------------------------------------
 
 bool MotionExecutor::start(const MissionPlan& plan, const Estimate& estimate) noexcept {
   if (!begin(Route::along(plan), estimate)) return false;
@@ -70,13 +69,10 @@ bool MotionExecutor::skip() noexcept {
 }
 
 void MotionExecutor::abort() noexcept {
-  route_ = Route{};
-  leg_ = Leg{};
-  status_ = ExecutorStatus{};
+  status_ = ExecutorStatus{};  // idle: route and leg are not looked at again
 }
 
-// Legs
-// -----------------------------------------------------------------------------------------------------------------
+// Legs -------------------------------------------------------------------------------------------
 
 bool MotionExecutor::begin(const Route& route, const Estimate& estimate) noexcept {
   if (route.count() == 0 || !isUsable(estimate)) return false;
@@ -149,8 +145,7 @@ double MotionExecutor::speed() const noexcept {
   return leg_.speed > 0.0 ? leg_.speed : config_.speed_mps;
 }
 
-// One cycle
-// ------------------------------------------------------------------------------------------------------------
+// One cycle --------------------------------------------------------------------------------------
 
 ExecutorOutput MotionExecutor::update(Duration dt, const ExecutorInput& in) noexcept {
   const Duration step = std::max(dt, Duration(0));

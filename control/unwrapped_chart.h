@@ -22,7 +22,7 @@ class UnwrappedChart {
   /// Follows the drone to p_AD [m], `seconds` after the last call, and returns (L, theta, phi):
   /// theta in (-pi, pi], beyond
   /// +-90 deg on the far side of the axis. `phi_rate`: azimuth rate commanded since then [rad/s].
-  /// `damping_radius` d [m], > 0: how near the axis the azimuth stops to count, eq. (C4).
+  /// `damping_radius` d [m], > 0: how near the axis the azimuth stops to count, eq. (C12).
   TetherCoordinates follow(double seconds, const Eigen::Vector3d& p_AD, double phi_rate,
                            double damping_radius) noexcept;
 

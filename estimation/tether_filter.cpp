@@ -37,6 +37,23 @@ MotionNoise motionNoise(double dt, double tau, double sigma) noexcept {
           .vv = variance * one_minus_a * (2.0 - one_minus_a)};
 }
 
+// d(J_p_q q_dot)/dp: how the velocity that constant rates make changes with the position. Without
+// it the filter would take angular rates for absolute speeds, and so believe that it can see the
+// length of the tether.
+Eigen::Matrix3d velocityGradient(const Eigen::Vector3d& p_AD, const TetherRates& rates) noexcept {
+  const double L = std::max(kMinChord, p_AD.norm());
+  const double r = std::max(kMinChord, std::hypot(p_AD.x(), p_AD.z()));
+  const double phi = toTether(p_AD).phi;
+  const Eigen::Vector3d e_r = p_AD / L;
+  const Eigen::Vector3d e_out(std::sin(phi), 0.0, std::cos(phi));
+  const Eigen::Vector3d e_phi(std::cos(phi), 0.0, -std::sin(phi));
+  const Eigen::Vector3d e_up = Eigen::Vector3d::UnitY();
+  return rates.L_dot / L * (Eigen::Matrix3d::Identity() - e_r * e_r.transpose()) +
+         rates.theta_dot * (e_up * e_out.transpose() - e_out * e_up.transpose() -
+                            p_AD.y() / r * e_phi * e_phi.transpose()) +
+         rates.phi_dot * (e_phi * e_out.transpose() - e_out * e_phi.transpose());
+}
+
 Eigen::Vector3d direction(double theta, double phi) noexcept {
   return toCartesian({1.0, theta, phi});
 }
@@ -121,7 +138,11 @@ void TetherFilter::predict(double dt, const TetherRates& commanded, const Anchor
 
   TetherRates rates = commanded;
   rates.L_dot *= x_(kScale);  // the reel turns in its own metres
-  const Eigen::Vector3d v_cmd = velocityFromRates(toTether(p() - anchor.p_WA), rates);
+  const Eigen::Vector3d p_AD = p() - anchor.p_WA;
+  const TetherCoordinates q = toTether(p_AD);
+  const Eigen::Vector3d v_cmd = velocityFromRates(q, rates);
+  const Eigen::Matrix3d v_cmd_p = velocityGradient(p_AD, rates);
+  const Eigen::Vector3d v_cmd_s = commanded.L_dot * direction(q.theta, q.phi);
   const Eigen::Vector3d departure = v() - v_cmd;
   x_.segment<3>(kP) += v_cmd * dt + reach * departure;  // (16)
   x_.segment<3>(kV) = v_cmd + a * departure;
@@ -130,16 +151,20 @@ void TetherFilter::predict(double dt, const TetherRates& commanded, const Anchor
   x_(kLogT) = nominal + keep * (x_(kLogT) - nominal);
 
   Covariance F = Covariance::Identity();
+  F.block<3, 3>(kP, kP) += (dt - reach) * v_cmd_p;
   F.block<3, 3>(kP, kV).diagonal().setConstant(reach);
+  F.block<3, 1>(kP, kScale) = (dt - reach) * v_cmd_s;
+  F.block<3, 3>(kV, kP) = (1.0 - a) * v_cmd_p;
   F.block<3, 3>(kV, kV).diagonal().setConstant(a);
+  F.block<3, 1>(kV, kScale) = (1.0 - a) * v_cmd_s;
   F(kLogT, kLogT) = keep;
   P_ = F * P_ * F.transpose();
-  const MotionNoise q = motionNoise(dt, tau, c.velocity_sigma_mps);
+  const MotionNoise gained = motionNoise(dt, tau, c.velocity_sigma_mps);
   for (int i = 0; i < 3; ++i) {
-    P_(kP + i, kP + i) += q.pp;
-    P_(kP + i, kV + i) += q.pv;
-    P_(kV + i, kP + i) += q.pv;
-    P_(kV + i, kV + i) += q.vv;
+    P_(kP + i, kP + i) += gained.pp;
+    P_(kP + i, kV + i) += gained.pv;
+    P_(kV + i, kP + i) += gained.pv;
+    P_(kV + i, kV + i) += gained.vv;
   }
   P_(kLogT, kLogT) += c.tension_sigma * c.tension_sigma * (1.0 - keep * keep);
   P_(kScale, kScale) += c.reel_scale_drift * c.reel_scale_drift * dt;

@@ -14,6 +14,11 @@ namespace {
 
 std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
 
+// Features: faces 0 top, 1 bottom, 2 + i side i; edges kFirstEdge + group + i.
+constexpr int kVerticalEdge = kFirstEdge;    // at corner i
+constexpr int kTopEdge = kFirstEdge + 100;   // of side i
+constexpr int kBottomEdge = kFirstEdge + 200;
+
 ConvexPrism makePrism(const ConvexPiece& piece, double y_min, double y_max, int obstacle) {
   ConvexPrism prism;
   prism.corner_count = static_cast<int>(piece.corner.size());
@@ -125,7 +130,7 @@ int edgeContacts(const ConvexPrism& prism, const Eigen::Vector3d& p0, const Eige
     const int before = (i + prism.corner_count - 1) % prism.corner_count;
     if (vertical) {
       if (prism.inner[index(i)] || prism.inner[index(before)]) continue;
-      consider(cornerAt(prism, i, prism.y_min), prism.y_max - prism.y_min, 100 + i);
+      consider(cornerAt(prism, i, prism.y_min), prism.y_max - prism.y_min, kVerticalEdge + i);
       continue;
     }
     if (prism.inner[index(i)]) continue;
@@ -135,7 +140,8 @@ int edgeContacts(const ConvexPrism& prism, const Eigen::Vector3d& p0, const Eige
     if (std::abs(extent) < (1.0 - 1e-9) * side.norm()) continue;
     const int start = extent > 0.0 ? i : next;
     for (const double y : {prism.y_max, prism.y_min}) {
-      consider(cornerAt(prism, start, y), std::abs(extent), (y == prism.y_max ? 200 : 300) + i);
+      consider(cornerAt(prism, start, y), std::abs(extent),
+               (y == prism.y_max ? kTopEdge : kBottomEdge) + i);
     }
   }
   return count;
@@ -161,6 +167,30 @@ int segmentContacts(const ConvexPrism& prism, const Eigen::Vector3d& p0, const E
   // No edge within the segment's length. A face much farther off than that edge is not what it meets.
   const bool face_is_near = face.side >= 0 && face.depth <= best.depth + 3.0 * margin;
   return face_is_near ? faceContact(p0, p1, face, out) : 0;
+}
+
+SolidEdge edgeOf(const ConvexPrism& prism, int feature) noexcept {
+  const auto normal = [&](int side) -> Eigen::Vector3d {
+    const Eigen::Vector2d& n = prism.normal[index(side)];
+    return {n.y(), 0.0, n.x()};
+  };
+  const int i = (feature - kFirstEdge) % 100;
+  SolidEdge edge;
+  if (feature < kTopEdge) {
+    const int before = (i + prism.corner_count - 1) % prism.corner_count;
+    edge.start = cornerAt(prism, i, prism.y_min);
+    edge.length = prism.y_max - prism.y_min;
+    edge.outward = (normal(i) + normal(before)).normalized();
+    return edge;
+  }
+  const bool top = feature < kBottomEdge;
+  const double y = top ? prism.y_max : prism.y_min;
+  edge.start = cornerAt(prism, i, y);
+  const Eigen::Vector3d side = cornerAt(prism, (i + 1) % prism.corner_count, y) - edge.start;
+  edge.length = side.norm();
+  edge.direction = side / edge.length;
+  edge.outward = (normal(i) + Eigen::Vector3d(0.0, top ? 1.0 : -1.0, 0.0)).normalized();
+  return edge;
 }
 
 double signedDistance(const ConvexPrism& prism, const Eigen::Vector3d& p) noexcept {

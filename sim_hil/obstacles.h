@@ -34,16 +34,28 @@ struct ConvexPrism {
   int obstacle{0};  ///< Index of the scene's box or prism that this is a piece of.
 };
 
+/// An edge of a prism.
+struct SolidEdge {
+  Eigen::Vector3d start{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d direction{Eigen::Vector3d::UnitY()};  ///< Unit.
+  double length{0.0};
+  Eigen::Vector3d outward{Eigen::Vector3d::UnitX()};  ///< Between the normals of its two faces, unit.
+};
+
 /// A point of the segment p0 + s (p1 - p0) that touches a solid. The half-space rule
 /// normal . p(s) >= offset keeps the segment out.
 struct SegmentContact {
   double s{0.0};  ///< In [0, 1].
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};
   double offset{0.0};
-  int feature{0};  ///< Which edge or face; equal for the same feature in successive steps.
+  int feature{0};  ///< Which face or, from kFirstEdge on, which edge of the prism.
 };
 
 inline constexpr int kMaxSegmentContacts = 4;
+inline constexpr int kFirstEdge = 100;
+
+/// `feature` is an edge of the prism. Real-time safe: no allocation, no locks, no exceptions.
+[[nodiscard]] SolidEdge edgeOf(const ConvexPrism& prism, int feature) noexcept;
 
 /// Contacts of the segment with the prism that overlap it or are nearer than `margin` [m]. Returns
 /// how many were written to `out`. Real-time safe: no allocation, no locks, no exceptions.

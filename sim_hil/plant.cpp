@@ -150,18 +150,26 @@ void Plant::updateTruth() noexcept {
   updateContacts();
 }
 
+/// Bends and faces in the order of the tether; what is near on the same obstacle is one contact.
 void Plant::updateContacts() noexcept {
   truth_.contact_count = 0;
   truth_.p_WA.setZero();
   int last_obstacle = -1;
-  for (const TetherContact& c : tether_.contacts()) {
-    const int obstacle = obstacles_.solids()[static_cast<std::size_t>(c.solid)].obstacle;
-    const Eigen::Vector3d p = tether_.contactPoint(c);
+  const auto count = [&](int solid, const Eigen::Vector3d& p) {
+    const int obstacle = obstacles_.solids()[static_cast<std::size_t>(solid)].obstacle;
     const bool same = obstacle == last_obstacle && (p - truth_.p_WA).norm() < kSameContact;
     if (!same) ++truth_.contact_count;
     truth_.p_WA = p;
     last_obstacle = obstacle;
+  };
+  auto faces = tether_.faceContacts();
+  for (const EdgeContact& bend : tether_.bends()) {
+    for (; !faces.empty() && faces[0].link < bend.link; faces = faces.subspan(1)) {
+      count(faces[0].solid, tether_.contactPoint(faces[0]));
+    }
+    count(bend.solid, bend.point());
   }
+  for (const FaceContact& c : faces) count(c.solid, tether_.contactPoint(c));
 }
 
 SensorInput Plant::sensorInput() const noexcept {

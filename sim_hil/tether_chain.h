@@ -5,8 +5,8 @@
 /// drone as its last mass, so that the tension on both ends is part of one solution.
 ///
 /// Model (docs/simulator.md): links that resist stretching but not compression (Kelvin-Voigt, EA and
-/// a damping time), weight, air drag, obstacles and floor as stiff one-sided springs on the links,
-/// Coulomb friction. One step is backward Euler, solved as the minimum of the convex incremental
+/// a damping time), weight, air drag; links bent round edges with the capstan law (tether_wrap.h);
+/// faces and floor as stiff one-sided springs with Coulomb friction. One step is backward Euler, solved as the minimum of the convex incremental
 /// potential by Newton's method on the block-tridiagonal Hessian: stable at any tension, mass ratio
 /// and step, and it never adds energy.
 ///
@@ -22,6 +22,7 @@
 #include "sim_hil/obstacles.h"
 #include "sim_hil/tether_contact.h"
 #include "sim_hil/tether_mesh.h"
+#include "sim_hil/tether_wrap.h"
 
 namespace tautline::sim {
 
@@ -32,7 +33,7 @@ struct TetherConfig {
   double axial_damping_time{0.004};  ///< Damping over stiffness [s].
   double diameter{0.002};           ///< [m]
   double drag_coefficient{1.1};     ///< Of a cylinder across the flow.
-  double internal_damping{0.004};   ///< Bending losses, as viscous drag per length [N s/m^2].
+  double internal_damping{0.006};   ///< Bending losses, as viscous drag per length [N s/m^2].
   double friction{0.3};             ///< Coulomb, on obstacles.
   double floor_friction{0.4};
   double contact_stiffness{5000.0};  ///< Of an obstacle's surface under one contact [N/m].
@@ -83,13 +84,16 @@ class TetherChain {
   [[nodiscard]] Eigen::Vector3d endTension() const noexcept;
   /// Tension at the outlet [N].
   [[nodiscard]] double reelTension() const noexcept;
+  /// Mean over the link, where it is bent [N].
   [[nodiscard]] double linkTension(int link) const noexcept { return tension_[at(link)]; }
 
-  /// Contacts of the last step that carry a force, from reel to drone.
-  [[nodiscard]] std::span<const TetherContact> contacts() const noexcept {
-    return {contact_.data(), static_cast<std::size_t>(contact_count_)};
+  /// Where the tether is bent round an edge, from reel to drone.
+  [[nodiscard]] std::span<const EdgeContact> bends() const noexcept { return wrap_.all(); }
+  /// Where it lies on a face and carries a force, from reel to drone.
+  [[nodiscard]] std::span<const FaceContact> faceContacts() const noexcept {
+    return {face_.data(), at(face_count_)};
   }
-  [[nodiscard]] Eigen::Vector3d contactPoint(const TetherContact& c) const noexcept;
+  [[nodiscard]] Eigen::Vector3d contactPoint(const FaceContact& c) const noexcept;
   /// Normal force of the ground on the drone [N].
   [[nodiscard]] double groundForce() const noexcept { return ground_force_[at(n_)]; }
 
@@ -104,29 +108,43 @@ class TetherChain {
   using Blocks = std::array<Eigen::Matrix3d, kMaxLinks + 1>;
 
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-  void moveMesh(double h, double L) noexcept;
+  [[nodiscard]] double linkLength(int link) const noexcept { return mesh_.fraction(link) * L_; }
+  [[nodiscard]] TetherWrap::Way way(int link) const noexcept;
+
+  // tether_chain.cpp
+  void moveMesh(double h) noexcept;
   void findContacts(const Obstacles& obstacles, double L_rate) noexcept;
-  void setFriction(TetherContact& c, std::span<const TetherContact> last,
+  void touchSolid(const Obstacles& obstacles, std::size_t solid, int link) noexcept;
+  void setFriction(FaceContact& contact, std::span<const FaceContact> last,
                    double L_rate) const noexcept;
-  void prepare(double h, const EndLoad& end, const Eigen::Vector3d& wind) noexcept;
-  double assemble(double h, const Obstacles& obstacles, const EndLoad& end) noexcept;
-  double assembleLinks(double h) noexcept;
-  double assembleGround(double h, double floor, double end_ground) noexcept;
-  double assembleContacts(double h) noexcept;
+  void prepare(double h, double L_rate, const EndLoad& end, const Eigen::Vector3d& wind) noexcept;
+
+  // tether_newton.cpp
+  void minimize(double h, const Obstacles& obstacles, const EndLoad& end) noexcept;
+  void searchLine(double h, const Obstacles& obstacles, const EndLoad& end) noexcept;
+  void assemble(double h, const Obstacles& obstacles, const EndLoad& end) noexcept;
+  void assembleLinks(double h) noexcept;
+  void assembleBentLink(double h, int link) noexcept;
+  [[nodiscard]] double linkForce(double h, int link, double length, double& stiffness) const noexcept;
+  void assembleGround(double h, double floor, double end_ground) noexcept;
+  void assembleFaces(double h) noexcept;
   [[nodiscard]] double residual() const noexcept;
   void solve() noexcept;
-  [[nodiscard]] double linkLength(int link) const noexcept { return mesh_.fraction(link) * L_; }
 
   TetherConfig config_;
   int n_;
   double L_;
   TetherMesh mesh_;
-  NodeScalars tension_{};
-  NodeScalars stretch_{};  // elongation at the end of the last step, not negative
+  TetherWrap wrap_;
   Nodes x_{};
   Nodes v_{};
-  std::array<TetherContact, kMaxChainContacts> contact_{};
-  int contact_count_{0};
+  NodeScalars tension_{};
+  NodeScalars rubbing_{};  // tension at a bent link's end towards the drone minus that at its start
+  NodeScalars stretch_{};  // elongation at the end of the last step, not negative
+  NodeScalars slip_{};     // speed of the material round a link's bends, towards the drone [m/s]
+  std::array<bool, kMaxLinks> bent_{};
+  std::array<FaceContact, kMaxFaceContacts> face_{};
+  int face_count_{0};
 
   // One step's work space.
   Nodes x_old_{};
@@ -135,11 +153,13 @@ class TetherChain {
   Nodes direction_{};
   NodeScalars mass_{};
   NodeScalars drag_{};
+  NodeScalars rub_{};   // friction of a bent link over its slip [N s/m]
+  NodeScalars flow_{};  // of the material past each node, towards the drone [m/s]
   NodeScalars ground_force_{};
   NodeScalars ground_friction_{};
   Eigen::Vector3d wind_{Eigen::Vector3d::Zero()};
   Blocks diagonal_{};
-  Blocks coupling_{};  // between node i and i + 1, symmetric
+  Blocks coupling_{};  // row node i, column node i + 1
   int iterations_{0};
 };
 

@@ -26,12 +26,12 @@ struct VehicleConfig {
   double radius{0.15};          ///< What must not touch anything [m].
   double survivable_impact{1.5};  ///< On the ground [m/s].
   double tension{1.0};          ///< Pull on the tether that the onboard loop adds [N].
-  double bandwidth{2.5};        ///< Of the onboard angle loop [rad/s].
+  double bandwidth{2.2};        ///< Of the onboard angle loop [rad/s].
   double damping{1.0};          ///< Its damping ratio without lags.
   double correction_max{2.0};   ///< Largest force of the angle error [N].
-  double angle_filter{0.3};     ///< Of the sensed tether direction against the vehicle's motion [s].
+  double angle_filter{0.8};     ///< Of the sensed tether direction against the vehicle's motion [s].
   double lever_min{0.3};        ///< Angle errors count as on a tether of at least ... [m]
-  double lever_max{4.0};        ///< ... and at most this length [m].
+  double lever_max{8.0};        ///< ... and at most this length [m].
   double elevation_min{radians(-60)};  ///< Set-point limits [rad].
   double elevation_max{radians(89.5)};
   double takeoff_elevation{radians(50)};  ///< The set-point rises to at least this [rad].

@@ -16,6 +16,7 @@ namespace {
 
 constexpr Duration kTruthPeriod = std::chrono::milliseconds(20);
 constexpr Duration kLoopPeriod = std::chrono::seconds(1);
+constexpr Duration kSettle = std::chrono::seconds(1);
 constexpr std::int64_t kSession = 1;  // the only operator there is
 
 StationConfig forBench(const LockstepConfig& config) {
@@ -128,7 +129,10 @@ FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration li
   }
   if (!over() && bench.output().supervision.mode != Mode::kStandby) {
     ask(Request::kLand);
-    result.landed = flyUntil(Mode::kStandby) && bench.truth().on_ground && !bench.truth().motors_on;
+    flyUntil(Mode::kStandby);
+    for (const Time settled = bench.now() + kSettle; bench.now() < settled;) cycle();  // the last centimetres, rotors off
+    result.landed = bench.output().supervision.mode == Mode::kStandby && bench.truth().on_ground && !bench.truth().motors_on &&
+                    !bench.truth().crashed;
   }
   result.crash = bench.truth().crash_reason;
   result.duration = bench.now() - Time{};

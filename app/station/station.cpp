@@ -73,12 +73,13 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   const VehicleCommand wanted = control(dt, guidance);
   const VehicleCommand gated = gate_.apply(dt, wanted).command;
   out_.command = override(gated);
+  out_.command.length_rate = dead_zone_.compensate(dt, out_.command.length_rate);
   last_command_ = out_.command;
 
   // Tell.
   out_.mission = guidance_.mission();
   out_.contact_id = guidance_.contacts().activeId();
-  out_.mission_hash = missions_.loaded() != nullptr ? missions_.loaded()->hash : 0;
+  out_.loaded_hash = missions_.loaded() != nullptr ? missions_.loaded()->hash : 0;
   out_.mission_items = missions_.receivedWaypoints();
   if (out_.mission.state != mission_before) tellMission(out_.mission);
   return out_;
@@ -142,10 +143,12 @@ void Station::answer(std::int64_t session, std::int32_t sequence, AckResult resu
 void Station::enterMode(Time now) noexcept {
   const Mode mode = out_.supervision.mode;
   tell({EventCode::kModeChanged, mode, out_.supervision.reasons});
-  controller_->reset();
-  dead_zone_.reset();
   if (mode == Mode::kAuto) missions_.activate();
-  if (mode == Mode::kStandby) localizer_.reset(config_.guidance.home_position_m, now);
+  if (mode == Mode::kStandby) {
+    localizer_.reset(config_.guidance.home_position_m, now);
+    controller_->reset();
+    dead_zone_.reset();
+  }
 }
 
 /// Rates for the route, by the configured law; standing still where there is none or the law cannot act.
@@ -157,7 +160,7 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   if (!guidance.route.active) return command;
   const RateCommand rates = controller_->update(dt, guidance.route.control);
   if (!rates.ok) return command;
-  command.length_rate = dead_zone_.compensate(dt, rates.length_rate);
+  command.length_rate = rates.length_rate;
   command.elevation_rate = rates.elevation_rate;
   command.azimuth_rate = rates.azimuth_rate;
   command.yaw_rate = guidance.route.yaw_rate;

@@ -45,8 +45,8 @@ struct StepOutput {
   ConditionSet conditions;
   SupervisorOutput supervision;
   ExecutorStatus mission;
-  std::uint64_t mission_hash{0};
-  int mission_items{0};  ///< Waypoints received.
+  std::uint64_t loaded_hash{0};  ///< Of the mission that waits to be flown, 0 = none.
+  int mission_items{0};          ///< Its waypoints received so far.
   std::optional<CommandAck> ack;
   std::array<StationEvent, 8> events{};
   int event_count{0};

@@ -152,7 +152,7 @@ void Telemetry::sendStation(Time now, const StepOutput& out) noexcept {
   m.conditions = as<std::int32_t>(out.conditions.bits());
   m.reasons = as<std::int32_t>(out.supervision.reasons.bits());
   m.time_in_mode_us = std::chrono::duration_cast<std::chrono::microseconds>(out.supervision.time_in_mode).count();
-  m.mission_hash = as<std::int64_t>(out.mission_hash);
+  m.mission_hash = as<std::int64_t>(out.loaded_hash);
   m.mission_items = out.mission_items;
   send(channel::kStationState, m, now);
 }
@@ -237,7 +237,7 @@ void Telemetry::sendCommand(Time now, const VehicleCommand& c) noexcept {
 void Telemetry::sendMission(Time now, const StepOutput& out) noexcept {
   const ExecutorStatus& s = out.mission;
   tautline::mission_status_t m{};
-  m.mission_hash = as<std::int64_t>(out.mission_hash);
+  m.mission_hash = as<std::int64_t>(s.mission_hash);
   m.state = as<std::int8_t>(s.state);
   m.failure = as<std::int8_t>(s.failure);
   m.waypoint = s.waypoint;
@@ -250,7 +250,7 @@ void Telemetry::sendMission(Time now, const StepOutput& out) noexcept {
   m.target_length_m = s.target_length;
   m.target_elevation_rad = s.target_elevation;
   m.target_azimuth_rad = s.target_azimuth;
-  m.time_on_waypoint_s = s.time_on_waypoint;
+  m.time_on_waypoint_s = toSeconds(s.time_on_waypoint);
   send(channel::kMissionStatus, m, now);
 }
 

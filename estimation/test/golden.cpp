@@ -61,11 +61,11 @@ std::vector<Attitude> loadAttitude() {
   for (const json& c : cases("lean_tension", "quat_cases")) {
     const json& q = c.at("quat_abcd");
     const json& n = c.at("n_g");
-    out.push_back({.R_WB = Eigen::Quaterniond(q.at(0).get<double>(), q.at(1).get<double>(),
-                                              q.at(2).get<double>(), q.at(3).get<double>()),
-                   .n = Eigen::Vector3d(n.at(0).get<double>(), n.at(1).get<double>(),
-                                        n.at(2).get<double>()),
-                   .beta = c.at("beta")});
+    out.push_back(
+        {.R_WB = Eigen::Quaterniond(q.at(0).get<double>(), q.at(1).get<double>(),
+                                    q.at(2).get<double>(), q.at(3).get<double>()),
+         .n = Eigen::Vector3d(n.at(0).get<double>(), n.at(1).get<double>(), n.at(2).get<double>()),
+         .beta = c.at("beta")});
   }
   return out;
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Vectors of an independent reference implementation (estimation/test/golden/*.json; conventions inside each file).
+/// Vectors of an independent reference implementation (estimation/test/golden/*.json; conventions
+/// inside each file).
 
 #include <vector>
 

@@ -32,15 +32,18 @@ TEST(PublishedCatenary, AgreesWithTheReferenceInBothReadings) {
 }
 
 TEST(PublishedCatenary, ItsCorrectionIsScaleFree) {
-  // Neither tension nor tether weight nor length changes the corrected angle: it is a fixed function of the sensed one.
+  // Neither tension nor tether weight nor length changes the corrected angle: it is a fixed
+  // function of the sensed one.
   const struct {
     double sensed, corrected;
-  } table[] = {{5, 2.50}, {15, 7.59}, {30, 15.73}, {45, 25.17}, {60, 37.21}, {75, 54.70}, {85, 73.36}};
+  } table[] = {{5, 2.50},   {15, 7.59},  {30, 15.73}, {45, 25.17},
+               {60, 37.21}, {75, 54.70}, {85, 73.36}};
   for (const auto& row : table) {
     const double theta = row.sensed * kDegree;
     const double reference = publishedCatenary(theta, 1.0, 1.0).theta_r;
     EXPECT_NEAR(reference / kDegree, row.corrected, 0.005);
-    EXPECT_NEAR(reference, std::atan((1.0 / std::cos(theta) - 1.0) / std::asinh(std::tan(theta))), 1e-14);
+    EXPECT_NEAR(reference, std::atan((1.0 / std::cos(theta) - 1.0) / std::asinh(std::tan(theta))),
+                1e-14);
     for (const double T_0 : {0.01, 0.2, 1.0, 3.0, 1000.0}) {
       for (const double w : {1e-4, kTetherWeight, 2.0}) {
         EXPECT_NEAR(publishedCatenary(theta, T_0, w).theta_r, reference, 1e-15);
@@ -66,12 +69,14 @@ TEST(PublishedCatenary, IsExactOnlyForATetherThatIsLevelAtTheReel) {
   EXPECT_NEAR(level.L_s, L, 1e-12);
   EXPECT_NEAR(level.L_r, exact.p_AD.norm(), 1e-12);
   const auto taut = fixPosition(FixVariant::kExact, {2.5, theta, 0.3, 3.0, kTetherWeight});
-  const auto published = fixPosition(FixVariant::kAsPublishedCode, {2.5, theta, 0.3, 3.0, kTetherWeight});
+  const auto published =
+      fixPosition(FixVariant::kAsPublishedCode, {2.5, theta, 0.3, 3.0, kTetherWeight});
   EXPECT_GT((taut.p_AD - published.p_AD).norm(), 0.7);
 }
 
 TEST(PublishedCatenary, TextVariantPutsAShortTetherFarAway) {
-  // 2.5 m of tether at 1 N and 45 deg is "located" by the model's own length, T_0 = T: 16 m from the reel.
+  // 2.5 m of tether at 1 N and 45 deg is "located" by the model's own length, T_0 = T: 16 m from
+  // the reel.
   const auto fix =
       fixPosition(FixVariant::kAsPublishedText, {2.5, 45 * kDegree, 0.0, 1.0, kTetherWeight});
   ASSERT_TRUE(fix.ok);
@@ -81,7 +86,8 @@ TEST(PublishedCatenary, TextVariantPutsAShortTetherFarAway) {
 TEST(PublishedCatenary, IsOddAndFiniteAtItsLimits) {
   EXPECT_EQ(publishedCatenary(0.0, 1.0, 1.0).theta_r, 0.0);
   EXPECT_NEAR(publishedCatenary(1e-9, 1.0, 1.0).theta_r, 0.5e-9, 1e-24);
-  EXPECT_DOUBLE_EQ(publishedCatenary(-0.7, 1.0, 1.0).theta_r, -publishedCatenary(0.7, 1.0, 1.0).theta_r);
+  EXPECT_DOUBLE_EQ(publishedCatenary(-0.7, 1.0, 1.0).theta_r,
+                   -publishedCatenary(0.7, 1.0, 1.0).theta_r);
   EXPECT_NEAR(publishedCatenary(kPi / 2, 1.0, 1.0).theta_r, kPi / 2, 1e-12);
 }
 

@@ -135,6 +135,7 @@ TEST(SensorHealth, HoldingStillIsNotStuck) {
   }
   // At the end of the vehicle's elevation range more of it has no effect.
   bench.frame().angles.value.theta = 1.56;
+  bench.command().length_rate = 0.0;
   bench.command().elevation_rate = 0.2;
   EXPECT_EQ(bench.run(5.0).bits(), 0u);
 }

@@ -46,7 +46,7 @@ TEST(LeanTension, ForcesBalance) {
 }
 
 TEST(LeanTension, RefusesLeansThatNoTensionExplains) {
-  EXPECT_FALSE(forcesFromLean(0.5, 0.6, kG).ok);          // thrust below the tether's line
+  EXPECT_FALSE(forcesFromLean(0.5, 0.6, kG).ok);            // thrust below the tether's line
   EXPECT_FALSE(forcesFromLean(kPi / 2 + 0.1, 0.6, kG).ok);  // leaning towards the anchor
   EXPECT_FALSE(forcesFromLean(kNan, 0.6, kG).ok);
   EXPECT_FALSE(forcesFromLean(1.2, kNan, kG).ok);
@@ -127,7 +127,9 @@ TEST(MapTension, IsTheLeastCostOnAFineGrid) {
                         2.0 * sigma_beta * (unit(random) - 0.5);
     const TensionPrior prior{0.2 + 2.0 * unit(random), 0.05 + 0.5 * unit(random)};
     const auto cost = [&](double T) {
-      return std::pow((beta - std::atan2(kG + T * std::sin(theta), T * std::cos(theta))) / sigma_beta, 2) +
+      return std::pow(
+                 (beta - std::atan2(kG + T * std::sin(theta), T * std::cos(theta))) / sigma_beta,
+                 2) +
              std::pow((T - prior.T) / prior.sigma, 2);
     };
     const double T_lower = i % 2 == 0 ? 0.0 : 0.4;

@@ -222,6 +222,7 @@ TEST_P(Wrap, RoundAnEdgeAndOffAgain) {
   const Obstacles obstacles(pillar());
   TetherConfig config;
   config.friction = GetParam();
+  config.density = 1e-3;  // little sag: the oracle is a taut string
   const Eigen::Vector3d a(0.0, 0.6, 2.0);
   const Eigen::Vector3d b(1.6, 0.6, 1.8);
   TetherChain chain(config, a, a.norm());
@@ -239,21 +240,23 @@ TEST_P(Wrap, RoundAnEdgeAndOffAgain) {
     }
   };
   fly(a, b, 6.0);
-  ASSERT_FALSE(chain.contacts().empty());
-  for (const TetherContact& c : chain.contacts()) {
-    const Eigen::Vector3d p = chain.contactPoint(c);
+  ASSERT_EQ(chain.bends().size(), 1U);
+  for (const EdgeContact& c : chain.bends()) {
+    const Eigen::Vector3d p = c.point();
     EXPECT_NEAR(p.x(), 0.5, 0.01);
     EXPECT_NEAR(p.z(), 1.4, 0.01);
     // Without friction the tether takes the shortest way; with it, it may stay where it first touched.
     const double share = std::hypot(0.5, 1.4) / (std::hypot(0.5, 1.4) + std::hypot(1.1, 0.4));
-    if (config.friction == 0.0) EXPECT_NEAR(p.y(), 0.6 * share, 0.03);
+    if (config.friction == 0.0) {
+      EXPECT_NEAR(p.y(), 0.6 * share, 0.03);
+    }
     EXPECT_GT(p.y(), 0.1);
     EXPECT_LT(p.y(), 0.6 * share + 0.03);
   }
   // The tether's bend is at the edge: the length agrees with that of the taut string.
   EXPECT_NEAR(chain.length(), lengthRoundCorner(chain.position(24)), 0.015);
   fly(b, a, 6.0);
-  EXPECT_TRUE(chain.contacts().empty());
+  EXPECT_TRUE(chain.bends().empty());
   EXPECT_NEAR(chain.position(24).norm(), chain.length(), 0.01);
 }
 

@@ -1,6 +1,7 @@
 #include "app/station/mission_store.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <random>
@@ -80,7 +81,9 @@ TEST(MissionStore, IsNotLoadedWhileAnythingIsMissing) {
   for (std::size_t missing = 0; missing < chunks.size(); ++missing) {
     const auto store = std::make_unique<MissionStore>();
     for (std::size_t i = 0; i < chunks.size(); ++i) {
-      if (i != missing) EXPECT_TRUE(store->add(chunks[i]));
+      if (i != missing) {
+        EXPECT_TRUE(store->add(chunks[i]));
+      }
     }
     EXPECT_EQ(store->loaded(), nullptr);
     EXPECT_TRUE(store->add(chunks[missing]));
