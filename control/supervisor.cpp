@@ -50,7 +50,7 @@ constexpr std::array kTransitions{
     Transition{in({M::kHold}),
                R::kNavigate,
                {},
-               {C::kMissionLoaded},
+               {C::kMissionLoaded, C::kVehicleFlying},
                kBlind | ConditionSet{C::kOverruns},
                M::kAuto},
     Transition{

@@ -61,14 +61,12 @@ Estimate Localizer::update(Time now, const SensorFrame& frame, const VehicleComm
   sensor_health_ = monitor_.update(now, frame, last_command);
   updateAnchor(anchor);
   updateGroundContact(now, frame, last_command);
-  if (!on_ground_) filter_.predict(dt, commandedRates(last_command), anchor_);
+  const bool memoryless = fix_variant_ && !on_ground_;
+  if (!fix_variant_ && !on_ground_) filter_.predict(dt, commandedRates(last_command), anchor_);
   useSamples(now, frame);
+  if (memoryless) updateFix(now, frame);
 
-  Estimate estimate = filterEstimate();
-  if (fix_variant_ && !on_ground_) {
-    updateFix(now, frame);
-    estimate = fix_;
-  }
+  Estimate estimate = memoryless ? fix_ : filterEstimate();
   estimate.valid = ready_;
   estimate.health = health(now, frame, estimate);
   return estimate;
@@ -142,9 +140,9 @@ void Localizer::useSamples(Time now, const SensorFrame& frame) noexcept {
           filter_.updateAngles(value.theta, value.phi, angles->age,
                                noiseWeight(noise.correlation_time_s, angles->period), anchor_));
     if (noise.use_altitude && value.altitude) {
-      static_cast<void>(
-          filter_.updateAltitude(*value.altitude, angles->age,
-                                 noiseWeight(noise.altitude_correlation_time_s, angles->period)));
+      static_cast<void>(filter_.updateAltitude(
+          *value.altitude, angles->age,
+          noiseWeight(noise.altitude_correlation_time_s, angles->period), anchor_));
     }
   }
   if (attitude) {

@@ -54,6 +54,34 @@ Eigen::Matrix3d velocityGradient(const Eigen::Vector3d& p_AD, const TetherRates&
          rates.phi_dot * (e_phi * e_out.transpose() - e_out * e_phi.transpose());
 }
 
+// After an update the covariance still refers to the state before it. Two changes of state leave
+// every reading of length and angles as it is: scaling (p_AD, v, s) together, and turning (p_AD, v)
+// about the vertical together with the azimuth zero. Their directions depend on the state; this map
+// carries the old ones into the new ones, so that no information about them appears from
+// linearizing at ever different points, eq. (23).
+TetherFilter::Covariance transport(const TetherFilter::State& before,
+                                   const TetherFilter::State& after,
+                                   const Anchor& anchor) noexcept {
+  constexpr double kMinTurnRadius =
+      0.3;  // [m] nearer to the pole a turn is no direction to rely on
+  constexpr int kP = TetherFilter::kP;
+  constexpr int kV = TetherFilter::kV;
+  const Eigen::Vector3d p_AD = before.segment<3>(kP) - anchor.p_WA;
+  const Eigen::Vector3d turn(p_AD.z(), 0.0, -p_AD.x());  // e_y x p_AD
+  const Eigen::RowVector3d along =
+      p_AD.transpose() / std::max(kMinChord * kMinChord, p_AD.squaredNorm());
+  const Eigen::RowVector3d round =
+      turn.transpose() / std::max(kMinTurnRadius * kMinTurnRadius, turn.squaredNorm());
+  const Eigen::Vector3d dp = after.segment<3>(kP) - before.segment<3>(kP);
+  const Eigen::Vector3d dv = after.segment<3>(kV) - before.segment<3>(kV);
+  TetherFilter::Covariance G = TetherFilter::Covariance::Identity();
+  G.block<3, 3>(kP, kP) += dp * along + Eigen::Vector3d(dp.z(), 0.0, -dp.x()) * round;
+  G.block<3, 3>(kV, kP) += dv * along + Eigen::Vector3d(dv.z(), 0.0, -dv.x()) * round;
+  G(TetherFilter::kScale, TetherFilter::kScale) =
+      after(TetherFilter::kScale) / before(TetherFilter::kScale);
+  return G;
+}
+
 Eigen::Vector3d direction(double theta, double phi) noexcept {
   return toCartesian({1.0, theta, phi});
 }
@@ -178,7 +206,7 @@ void TetherFilter::predict(double dt, const TetherRates& commanded, const Anchor
 
 template <int M, class Model>
 Innovation TetherFilter::update(const Model& model, const Eigen::Matrix<double, M, M>& R,
-                                double age, int iterations) noexcept {
+                                double age, const Anchor& anchor, int iterations) noexcept {
   const State x_prior = x_;
   const MotionNoise since = motionNoise(age, config_.process.velocity_time_constant_s,
                                         config_.process.velocity_sigma_mps);
@@ -210,6 +238,8 @@ Innovation TetherFilter::update(const Model& model, const Eigen::Matrix<double, 
   }
   const Covariance I_KH = Covariance::Identity() - K * H;
   Covariance P = I_KH * P_ * I_KH.transpose() + K * R_total * K.transpose();
+  const Covariance G = transport(x_prior, x, anchor);
+  P = G * P * G.transpose();
   P = 0.5 * (P + P.transpose().eval());
   if (!x.allFinite() || !P.allFinite()) return out;
   x_ = x;
@@ -243,7 +273,7 @@ Innovation TetherFilter::updateLength(double L_total, double age, double weight,
   };
   const double sigma = config_.noise.length_sigma_m;
   const Innovation out =
-      update<1>(model, Eigen::Matrix<double, 1, 1>(weight * sigma * sigma), age, 1);
+      update<1>(model, Eigen::Matrix<double, 1, 1>(weight * sigma * sigma), age, anchor, 1);
   clamp(anchor);
   return out;
 }
@@ -275,12 +305,13 @@ Innovation TetherFilter::updateAngles(double theta, double phi, double age, doub
       std::hypot(std::cos(theta) * config_.noise.azimuth_sigma_rad, std::sin(theta) * sigma_theta);
   const Eigen::Vector2d variance =
       weight * Eigen::Vector2d(sigma_theta * sigma_theta, across * across);
-  const Innovation out = update<2>(model, Eigen::Matrix2d(variance.asDiagonal()), age, 1);
+  const Innovation out = update<2>(model, Eigen::Matrix2d(variance.asDiagonal()), age, anchor, 1);
   clamp(anchor);
   return out;
 }
 
-Innovation TetherFilter::updateAltitude(double altitude, double age, double weight) noexcept {
+Innovation TetherFilter::updateAltitude(double altitude, double age, double weight,
+                                        const Anchor& anchor) noexcept {
   const auto model = [&](const State& x, const Eigen::Vector3d& p_then) {  // (19)
     const double predicted = p_then.y() - takeoff_height_ + x(kAltitudeOffset);
     Linearized<1> out{.residual = Eigen::Matrix<double, 1, 1>(altitude - predicted),
@@ -290,7 +321,7 @@ Innovation TetherFilter::updateAltitude(double altitude, double age, double weig
     return out;
   };
   const double sigma = config_.noise.altitude_sigma_m;
-  return update<1>(model, Eigen::Matrix<double, 1, 1>(weight * sigma * sigma), age, 1);
+  return update<1>(model, Eigen::Matrix<double, 1, 1>(weight * sigma * sigma), age, anchor, 1);
 }
 
 Innovation TetherFilter::updateLean(const Eigen::Quaterniond& R_WB, double age, double weight,
@@ -308,7 +339,7 @@ Innovation TetherFilter::updateLean(const Eigen::Quaterniond& R_WB, double age, 
   };
   const double sigma = config_.noise.lean_sigma_rad;
   const Innovation out = update<1>(model, Eigen::Matrix<double, 1, 1>(weight * sigma * sigma), age,
-                                   kTensionIterations);
+                                   anchor, kTensionIterations);
   clamp(anchor);
   return out;
 }
@@ -330,7 +361,7 @@ Innovation TetherFilter::updateReelTension(double T_reel, double age, double wei
   const double variance =
       weight * std::max(sigma * sigma, 1e-6);  // [N^2], a slack reel still says something
   const Innovation out =
-      update<1>(model, Eigen::Matrix<double, 1, 1>(variance), age, kTensionIterations);
+      update<1>(model, Eigen::Matrix<double, 1, 1>(variance), age, anchor, kTensionIterations);
   clamp(anchor);
   return out;
 }

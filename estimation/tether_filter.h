@@ -2,7 +2,7 @@
 
 /// @file
 /// The extended Kalman filter behind the localizer: state, prediction with commanded rates, and one
-/// update for each kind of reading. Equations (15)-(22) of docs/tether_model.md. It knows no
+/// update for each kind of reading. Equations (15)-(23) of docs/tether_model.md. It knows no
 /// samples, clocks or health; estimation/localizer.h does.
 ///
 /// State x, 11 numbers: p_WD, v_WD, ln T, reel scale s, azimuth zero, elevation bias, altitude
@@ -78,7 +78,8 @@ class TetherFilter {
   Innovation updateLength(double L_total, double age, double weight, const Anchor& anchor) noexcept;
   Innovation updateAngles(double theta, double phi, double age, double weight,
                           const Anchor& anchor) noexcept;
-  Innovation updateAltitude(double altitude, double age, double weight) noexcept;
+  Innovation updateAltitude(double altitude, double age, double weight,
+                            const Anchor& anchor) noexcept;
   Innovation updateLean(const Eigen::Quaterniond& R_WB, double age, double weight,
                         const Anchor& anchor) noexcept;
   Innovation updateReelTension(double T_reel, double age, double weight,
@@ -98,7 +99,7 @@ class TetherFilter {
   };
   template <int M, class Model>
   Innovation update(const Model& model, const Eigen::Matrix<double, M, M>& R, double age,
-                    int iterations) noexcept;
+                    const Anchor& anchor, int iterations) noexcept;
   void clamp(const Anchor& anchor) noexcept;
 
   LocalizerConfig config_;

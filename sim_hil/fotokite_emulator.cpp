@@ -14,12 +14,12 @@ using fotokite::GroundMode;
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 // Of a length change by Pos, PosL [counts/s]: out of the reel's dead zone in both directions.
 constexpr double kMoveRate = 110.0;
-constexpr double kMoveGain = 5.0;      // slows down before the target [1/s]
-constexpr double kMoveDone = 0.5;      // [counts]
-constexpr double kSlackTension = 0.05;  // [N]
+constexpr double kMoveGain = 5.0;       // slows down before the target [1/s]
+constexpr double kMoveDone = 0.5;       // [counts]
+constexpr double kSlackTension = 0.15;  // a tether that only hangs pulls less [N]
 constexpr Duration kSlackTime = std::chrono::milliseconds(300);
 constexpr Duration kStopShown = std::chrono::seconds(2);  // mode 49 after a normal stop
-constexpr double kBackupLow = 3.5;     // [V]
+constexpr double kBackupLow = 3.5;                        // [V]
 constexpr int kQuaternionDecimals = 4;
 
 /// The word up to the first blank, and the rest without leading blanks.
@@ -71,7 +71,8 @@ void FotokiteEmulator::obey(std::string_view line) noexcept {
   bool numbers = !rest.empty();
   while (numbers) {
     const std::size_t comma = rest.find(',');
-    if (fields.count == kMaxFields || !parseNumber(rest.substr(0, comma), fields.value[fields.count])) {
+    if (fields.count == kMaxFields ||
+        !parseNumber(rest.substr(0, comma), fields.value[fields.count])) {
       numbers = false;
       fields.count = 0;
       break;
@@ -178,7 +179,7 @@ void FotokiteEmulator::holdEverything() noexcept {
 
 void FotokiteEmulator::startTakeoff() noexcept {
   const Truth& truth = plant_.truth();
-  if (truth.crashed || !truth.on_ground || plant_.vehicle().motorsOn()) return;
+  if (truth.crashed || !truth.on_ground || plant_.vehicle().motorsOn() || batteryTooLow()) return;
   holdEverything();
   stopped_in_air_ = false;
   low_launch_ = plant_.readSensors().tangent.elevation < config_.low_launch_angle;
@@ -278,9 +279,15 @@ FlightMode FotokiteEmulator::flightMode() const noexcept {
     case FlightPhase::kParked:
       break;
   }
+  if (batteryTooLow()) return FlightMode::kBatteryTooLow;
   if (stopped_in_air_) return FlightMode::kMotorStopDisable;
   const bool just_stopped = has_flown_ && plant_.now() - motors_stopped_ < kStopShown;
   return just_stopped ? FlightMode::kMotorStopRestart : FlightMode::kIdle;
+}
+
+bool FotokiteEmulator::batteryTooLow() const noexcept {
+  const Vehicle& vehicle = plant_.vehicle();
+  return vehicle.batteryVoltage() < vehicle.config().battery_critical;
 }
 
 std::uint16_t FotokiteEmulator::flags() const noexcept {
@@ -291,7 +298,7 @@ std::uint16_t FotokiteEmulator::flags() const noexcept {
   const auto set = [&](bool condition, FlightFlag flag) {
     if (condition) bits |= flag;
   };
-  set(vehicle.batteryVoltage() < vehicle.config().battery_critical, kCriticalBattery);
+  set(batteryTooLow(), kCriticalBattery);
   set(vehicle.batteryVoltage() < vehicle.config().battery_low, kLowBattery);
   set(vehicle.backupVoltage() < kBackupLow, kLowBackupBattery);
   set(flying() && now - last_command_ > fromSeconds(config_.command_timeout), kNoSyncCommands);
@@ -331,7 +338,9 @@ void FotokiteEmulator::stepTelemetry() noexcept {
     if (subscribed_.position) {
       const double resolution = config_.angle_resolution;
       const int decimals = std::max(2, static_cast<int>(std::ceil(-std::log10(resolution) - 1e-9)));
-      const auto rounded = [resolution](double x) { return std::round(x / resolution) * resolution; };
+      const auto rounded = [resolution](double x) {
+        return std::round(x / resolution) * resolution;
+      };
       TelemetryLine line(fotokite::kPositionHeader);
       line.field(rounded(kHalfPi - sensed.tangent.elevation), decimals)
           .field(rounded(wrapped(sensed.tangent.azimuth - kHalfPi)), decimals)

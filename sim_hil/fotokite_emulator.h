@@ -71,6 +71,7 @@ class FotokiteEmulator {
   void stepTelemetry() noexcept;
   void sendStatusLines() noexcept;
   [[nodiscard]] bool flying() const noexcept;
+  [[nodiscard]] bool batteryTooLow() const noexcept;
 
   FotokiteEmulatorConfig config_;
   Plant& plant_;

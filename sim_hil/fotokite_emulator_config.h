@@ -8,18 +8,20 @@
 namespace tautline::sim {
 
 struct FotokiteEmulatorConfig {
-  double default_rate{1.0};      ///< Telemetry until parameter 117 is set [Hz].
-  double max_rate{100.0};        ///< Parameter 117 is cut to this [Hz].
-  double forced_rate{0.0};       ///< Not 0: telemetry at this rate whatever is asked for [Hz].
-  double status_rate{10.0};      ///< Most !Gimbal and !FlightStatus lines a second [Hz].
+  double default_rate{1.0};       ///< Telemetry until parameter 117 is set [Hz].
+  double max_rate{100.0};         ///< Parameter 117 is cut to this [Hz].
+  double forced_rate{0.0};        ///< Not 0: telemetry at this rate whatever is asked for [Hz].
+  double status_rate{10.0};       ///< Most !Gimbal and !FlightStatus lines a second [Hz].
   double angle_resolution{0.01};  ///< Of the angles in !Pos [rad]; the real device has 0.01.
-  double low_launch_angle{-0.35}; ///< Flag LOW_LAUNCH_ANGLE at take-off below this elevation [rad].
+  double low_launch_angle{
+      -0.35};                    ///< Flag LOW_LAUNCH_ANGLE at take-off below this elevation [rad].
   double command_timeout{0.5};   ///< Set-points are held without commands for this long [s].
   double landing_timeout{10.0};  ///< Emergency landing without commands for this long [s].
 
   template <class Visitor>
   void fields(Visitor& v) {
-    v.field("default_rate_hz", default_rate, Range{0.1, 100}, "telemetry until parameter 117 is set");
+    v.field("default_rate_hz", default_rate, Range{0.1, 100},
+            "telemetry until parameter 117 is set");
     v.field("max_rate_hz", max_rate, Range{0.1, 500}, "parameter 117 is cut to this");
     v.field("forced_rate_hz", forced_rate, Range{0, 500}, "not 0: whatever is asked for");
     v.field("status_rate_hz", status_rate, Range{0.1, 500}, "most !Gimbal and !FlightStatus lines");

@@ -15,8 +15,8 @@ namespace {
 std::size_t index(int i) noexcept { return static_cast<std::size_t>(i); }
 
 // Features: faces 0 top, 1 bottom, 2 + i side i; edges kFirstEdge + group + i.
-constexpr int kVerticalEdge = kFirstEdge;    // at corner i
-constexpr int kTopEdge = kFirstEdge + 100;   // of side i
+constexpr int kVerticalEdge = kFirstEdge;   // at corner i
+constexpr int kTopEdge = kFirstEdge + 100;  // of side i
 constexpr int kBottomEdge = kFirstEdge + 200;
 
 ConvexPrism makePrism(const ConvexPiece& piece, double y_min, double y_max, int obstacle) {
@@ -164,7 +164,8 @@ int segmentContacts(const ConvexPrism& prism, const Eigen::Vector3d& p0, const E
     const int count = edgeContacts(prism, p0, p1, best, margin, out);
     if (count > 0) return count;
   }
-  // No edge within the segment's length. A face much farther off than that edge is not what it meets.
+  // No edge within the segment's length. A face much farther off than that edge is not what it
+  // meets.
   const bool face_is_near = face.side >= 0 && face.depth <= best.depth + 3.0 * margin;
   return face_is_near ? faceContact(p0, p1, face, out) : 0;
 }

@@ -39,7 +39,8 @@ struct SolidEdge {
   Eigen::Vector3d start{Eigen::Vector3d::Zero()};
   Eigen::Vector3d direction{Eigen::Vector3d::UnitY()};  ///< Unit.
   double length{0.0};
-  Eigen::Vector3d outward{Eigen::Vector3d::UnitX()};  ///< Between the normals of its two faces, unit.
+  Eigen::Vector3d outward{
+      Eigen::Vector3d::UnitX()};  ///< Between the normals of its two faces, unit.
 };
 
 /// A point of the segment p0 + s (p1 - p0) that touches a solid. The half-space rule
@@ -62,8 +63,8 @@ inline constexpr int kFirstEdge = 100;
 int segmentContacts(const ConvexPrism& prism, const Eigen::Vector3d& p0, const Eigen::Vector3d& p1,
                     double margin, std::span<SegmentContact, kMaxSegmentContacts> out) noexcept;
 
-/// Distance from a point to the prism [m], negative inside. Real-time safe: no allocation, no locks,
-/// no exceptions.
+/// Distance from a point to the prism [m], negative inside. Real-time safe: no allocation, no
+/// locks, no exceptions.
 [[nodiscard]] double signedDistance(const ConvexPrism& prism, const Eigen::Vector3d& p) noexcept;
 
 struct Aabb {

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kGravity = 9.81;
 constexpr int kStepsPerAirUpdate = 10;
-constexpr double kDefaultFoot = 0.1;     // [m]
-constexpr double kSameContact = 0.05;    // contacts nearer than this on one obstacle are one [m]
-constexpr double kOnGround = 0.01;       // attachment this near its parking height stands [m]
+constexpr double kDefaultFoot = 0.1;   // [m]
+constexpr double kSameContact = 0.05;  // contacts nearer than this on one obstacle are one [m]
+constexpr double kOnGround = 0.01;     // attachment this near its parking height stands [m]
 
 /// Height of the attachment over the ground when parked, from the scene's start.
 double footOf(const Obstacles& obstacles, const Eigen::Vector3d& start) {
@@ -97,8 +97,8 @@ void Plant::step() noexcept {
 
 void Plant::stepAir() noexcept {
   ground_ = obstacles_.groundBelow(truth_.p_WD);
-  const double clearance = std::fmin(obstacles_.clearance(truth_.p_WD, true),
-                                     truth_.p_WD.y() - obstacles_.floor());
+  const double clearance =
+      std::fmin(obstacles_.clearance(truth_.p_WD, true), truth_.p_WD.y() - obstacles_.floor());
   wind_.step(kStepsPerAirUpdate * h_, clearance, random_);
 }
 

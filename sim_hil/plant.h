@@ -25,8 +25,8 @@ namespace tautline::sim {
 
 class Plant {
  public:
-  /// `world` is in W. Throws InputError if the scene is more than the plant takes, or if an obstacle
-  /// stands between the reel and the start. Not real-time safe: start-up only.
+  /// `world` is in W. Throws InputError if the scene is more than the plant takes, or if an
+  /// obstacle stands between the reel and the start. Not real-time safe: start-up only.
   Plant(const SimConfig& config, const Scene& world, std::uint64_t seed);
 
   /// One step of the virtual clock. Real-time safe: no allocation, no locks, no exceptions.
@@ -60,7 +60,7 @@ class Plant {
   Obstacles obstacles_;
   Random random_;
   Eigen::Vector3d p_start_;
-  double foot_;  // height of the attachment over what the vehicle stands on
+  double foot_;    // height of the attachment over what the vehicle stands on
   double ground_;  // under the vehicle
   TetherChain tether_;
   Reel reel_;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Direction of the tether by elevation and azimuth, W axes (docs/tether_model.md, eqs 1 and 2). The
-/// simulator's own few lines: it shares no tether geometry with the software under test.
+/// Direction of the tether by elevation and azimuth, W axes (docs/tether_model.md, eqs 1 and 2).
+/// The simulator's own few lines: it shares no tether geometry with the software under test.
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,8 @@ struct Polar {
           std::cos(a.elevation) * std::cos(a.azimuth)};
 }
 
-/// Of a vector that is not zero; azimuth in (-pi, pi], 0 where it is not defined. Real-time safe: no
-/// allocation, no locks, no exceptions.
+/// Of a vector that is not zero; azimuth in (-pi, pi], 0 where it is not defined. Real-time safe:
+/// no allocation, no locks, no exceptions.
 [[nodiscard]] inline Polar polarOf(const Eigen::Vector3d& v) noexcept {
   return {std::asin(std::clamp(v.y() / v.norm(), -1.0, 1.0)), std::atan2(v.x(), v.z())};
 }

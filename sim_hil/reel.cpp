@@ -13,8 +13,7 @@ Reel::Reel(const ReelConfig& config, double length) noexcept
 void Reel::command(double counts_per_second) noexcept {
   const double limit = fotokite::kMaxReelRate;
   double rate = std::isnan(counts_per_second) ? 0.0 : std::clamp(counts_per_second, -limit, limit);
-  const bool dead =
-      std::abs(rate - fotokite::kDeadZoneCentre) < 0.5 * fotokite::kDeadZoneWidth;
+  const bool dead = std::abs(rate - fotokite::kDeadZoneCentre) < 0.5 * fotokite::kDeadZoneWidth;
   if (dead) rate = 0.0;
   commanded_ = rate * metresPerCount();
 }

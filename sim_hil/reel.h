@@ -11,13 +11,13 @@ namespace tautline::sim {
 
 struct ReelConfig {
   double metres_per_count{0.00285};  ///< What the device's documentation says.
-  double scale{1.0};                 ///< True metres per nominal metre: what calibration has to find.
-  double power_on_length{0.0};       ///< Tether out when the encoder read 0 [m].
-  double lag{0.1};                   ///< Of the drum's speed behind the command [s].
-  double max_acceleration{3.0};      ///< [m/s^2]
-  double min_length{0.10};           ///< The end stop [m].
-  double max_length{10.0};           ///< All that is on the drum [m].
-  double slip_tension{9.0};          ///< The drive gives way above this [N].
+  double scale{1.0};             ///< True metres per nominal metre: what calibration has to find.
+  double power_on_length{0.0};   ///< Tether out when the encoder read 0 [m].
+  double lag{0.1};               ///< Of the drum's speed behind the command [s].
+  double max_acceleration{3.0};  ///< [m/s^2]
+  double min_length{0.10};       ///< The end stop [m].
+  double max_length{10.0};       ///< All that is on the drum [m].
+  double slip_tension{9.0};      ///< The drive gives way above this [N].
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -26,7 +26,8 @@ struct ReelConfig {
     v.field("power_on_length_m", power_on_length, Range{0, 100},
             "true tether out when the encoder read 0");
     v.field("lag_s", lag, Range{0, 2}, "of the drum's speed behind the command");
-    v.field("max_acceleration_mps2", max_acceleration, Range{0.1, 100}, "of the tether by the drum");
+    v.field("max_acceleration_mps2", max_acceleration, Range{0.1, 100},
+            "of the tether by the drum");
     v.field("min_length_m", min_length, Range{0.05, 10}, "end stop");
     v.field("max_length_m", max_length, Range{0.1, 100}, "all that is on the drum");
     v.field("slip_tension_n", slip_tension, Range{0.5, 100}, "the drive gives way above this");
@@ -41,19 +42,20 @@ class Reel {
   /// `length`: tether out at the start [m].
   Reel(const ReelConfig& config, double length) noexcept;
 
-  /// Sets the commanded rate [counts/s]; NaN counts as 0, larger ones are cut to the device's limit.
+  /// Sets the commanded rate [counts/s]; NaN counts as 0, larger ones are cut to the device's
+  /// limit.
   void command(double counts_per_second) noexcept;
   /// A locked reel does not follow commands; it still slips above the slip tension.
   void lock(bool locked) noexcept { locked_ = locked; }
 
-  /// Advances by h [s] under `tension` at the outlet [N]. Real-time safe: no allocation, no locks, no
-  /// exceptions.
+  /// Advances by h [s] under `tension` at the outlet [N]. Real-time safe: no allocation, no locks,
+  /// no exceptions.
   void step(double h, double tension) noexcept;
 
-  [[nodiscard]] double length() const noexcept { return length_; }    ///< Tether out [m].
-  [[nodiscard]] double rate() const noexcept { return rate_; }        ///< [m/s]
-  [[nodiscard]] std::int64_t counts() const noexcept;                 ///< Encoder.
-  [[nodiscard]] double metresPerCount() const noexcept;               ///< True.
+  [[nodiscard]] double length() const noexcept { return length_; }  ///< Tether out [m].
+  [[nodiscard]] double rate() const noexcept { return rate_; }      ///< [m/s]
+  [[nodiscard]] std::int64_t counts() const noexcept;               ///< Encoder.
+  [[nodiscard]] double metresPerCount() const noexcept;             ///< True.
   [[nodiscard]] double scale() const noexcept { return config_.scale; }
 
  private:

@@ -16,10 +16,10 @@ void Sensors::step(Time now, const SensorInput& truth, Random& random) noexcept 
     const Eigen::Vector3d noisy =
         unitVector(truth.tangent) + config_.angle_noise * random.normal3();
     const Polar sensed = polarOf(noisy);
-    angles_.sample(now,
-                   {sensed.elevation + config_.elevation_bias,
-                    wrapped(sensed.azimuth + config_.azimuth_bias)},
-                   random);
+    angles_.sample(
+        now,
+        {sensed.elevation + config_.elevation_bias, wrapped(sensed.azimuth + config_.azimuth_bias)},
+        random);
   }
   if (attitude_.due(now)) {
     const Eigen::Vector3d e = 0.5 * config_.attitude_noise * random.normal3();
@@ -28,8 +28,8 @@ void Sensors::step(Time now, const SensorInput& truth, Random& random) noexcept 
   }
   if (barometer_.due(now)) {
     barometer_.sample(
-        now,
-        truth.altitude + config_.barometer_bias + config_.barometer_noise * random.normal(), random);
+        now, truth.altitude + config_.barometer_bias + config_.barometer_noise * random.normal(),
+        random);
   }
 }
 

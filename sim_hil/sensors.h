@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The device's sensors: each has its own rate, latency and errors. A reading is what the sensor last
-/// delivered, never the present truth.
+/// The device's sensors: each has its own rate, latency and errors. A reading is what the sensor
+/// last delivered, never the present truth.
 
 #include <array>
 #include <cstdint>
@@ -36,12 +36,12 @@ struct SensorConfig {
   SensorTiming angles{100.0, 0.02, 0.005};
   SensorTiming attitude{100.0, 0.01, 0.005};
   SensorTiming barometer{25.0, 0.05, 0.0};
-  double angle_noise{0.005};    ///< Of the tether's direction, isotropic [rad].
-  double elevation_bias{0.0};   ///< Sensed minus true [rad].
-  double azimuth_bias{0.0};     ///< Sensed minus true; also a turned initialization frame [rad].
+  double angle_noise{0.005};     ///< Of the tether's direction, isotropic [rad].
+  double elevation_bias{0.0};    ///< Sensed minus true [rad].
+  double azimuth_bias{0.0};      ///< Sensed minus true; also a turned initialization frame [rad].
   double attitude_noise{0.005};  ///< Each axis [rad].
-  double barometer_noise{0.1};  ///< [m]
-  double barometer_bias{0.0};   ///< [m]
+  double barometer_noise{0.1};   ///< [m]
+  double barometer_bias{0.0};    ///< [m]
 
   template <class Visitor>
   void fields(Visitor& v) {

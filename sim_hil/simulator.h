@@ -34,9 +34,9 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// Steps the machine up to `t` in whole steps of config.step: it then stands at the last step that
-  /// is not after `t`. Times before now() do nothing. Real-time safe: no allocation, no locks, no
-  /// exceptions.
+  /// Steps the machine up to `t` in whole steps of config.step: it then stands at the last step
+  /// that is not after `t`. Times before now() do nothing. Real-time safe: no allocation, no locks,
+  /// no exceptions.
   void advanceTo(Time t) noexcept;
 
   /// Bytes from the station, effective now. Real-time safe: no allocation, no locks, no exceptions.

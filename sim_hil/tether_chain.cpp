@@ -8,11 +8,11 @@
 namespace tautline::sim {
 namespace {
 
-constexpr double kGravity = 9.81;         // [m/s^2]
-constexpr double kAirDensity = 1.2;       // [kg/m^3]
-constexpr double kContactMargin = 0.01;   // [m]
-constexpr double kMaxBendDepth = 0.02;    // a link deeper in a solid is not bent round its edge [m]
-constexpr double kCreep = 0.002;          // slip speed below which friction is viscous [m/s]
+constexpr double kGravity = 9.81;        // [m/s^2]
+constexpr double kAirDensity = 1.2;      // [kg/m^3]
+constexpr double kContactMargin = 0.01;  // [m]
+constexpr double kMaxBendDepth = 0.02;   // a link deeper in a solid is not bent round its edge [m]
+constexpr double kCreep = 0.002;         // slip speed below which friction is viscous [m/s]
 
 }  // namespace
 
@@ -171,11 +171,12 @@ void TetherChain::prepare(double h, double L_rate, const EndLoad& end,
     ground_friction_[at(i)] =
         config_.floor_friction * ground_force_[at(i)] / std::fmax(slip, kCreep);
   }
-  // Capstan law of bent links, T_drone / T_reel = exp(mu * turn) when sliding towards the drone, as a
-  // viscous coefficient with the tension and the slip of the last step.
+  // Capstan law of bent links, T_drone / T_reel = exp(mu * turn) when sliding towards the drone, as
+  // a viscous coefficient with the tension and the slip of the last step.
   for (int j = 0; j < n_; ++j) {
     const double limit =
-        bent_[at(j)] ? 2.0 * tension_[at(j)] * std::tanh(0.5 * config_.friction * way(j).turn) : 0.0;
+        bent_[at(j)] ? 2.0 * tension_[at(j)] * std::tanh(0.5 * config_.friction * way(j).turn)
+                     : 0.0;
     rub_[at(j)] = limit / std::fmax(std::abs(slip_[at(j)]), kCreep);
     if (!bent_[at(j)]) slip_[at(j)] = rubbing_[at(j)] = 0.0;
   }

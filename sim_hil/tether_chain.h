@@ -4,11 +4,12 @@
 /// The tether's own physics: a chain of lumped masses from the reel outlet to the drone, with the
 /// drone as its last mass, so that the tension on both ends is part of one solution.
 ///
-/// Model (docs/simulator.md): links that resist stretching but not compression (Kelvin-Voigt, EA and
-/// a damping time), weight, air drag; links bent round edges with the capstan law (tether_wrap.h);
-/// faces and floor as stiff one-sided springs with Coulomb friction. One step is backward Euler, solved as the minimum of the convex incremental
-/// potential by Newton's method on the block-tridiagonal Hessian: stable at any tension, mass ratio
-/// and step, and it never adds energy.
+/// Model (docs/simulator.md): links that resist stretching but not compression (Kelvin-Voigt, EA
+/// and a damping time), weight, air drag; links bent round edges with the capstan law
+/// (tether_wrap.h); faces and floor as stiff one-sided springs with Coulomb friction. One step is
+/// backward Euler, solved as the minimum of the convex incremental potential by Newton's method on
+/// the block-tridiagonal Hessian: stable at any tension, mass ratio and step, and it never adds
+/// energy.
 ///
 /// The reel changes the unstretched length L, which the links share (tether_mesh.h). Material then
 /// flows through the nodes, and friction acts on the material, not on the nodes.
@@ -28,13 +29,13 @@ namespace tautline::sim {
 
 struct TetherConfig {
   int links{24};
-  double density{0.0061};           ///< [kg/m]
-  double axial_stiffness{1e4};      ///< EA [N]
+  double density{0.0061};            ///< [kg/m]
+  double axial_stiffness{1e4};       ///< EA [N]
   double axial_damping_time{0.004};  ///< Damping over stiffness [s].
-  double diameter{0.002};           ///< [m]
-  double drag_coefficient{1.1};     ///< Of a cylinder across the flow.
-  double internal_damping{0.006};   ///< Bending losses, as viscous drag per length [N s/m^2].
-  double friction{0.3};             ///< Coulomb, on obstacles.
+  double diameter{0.002};            ///< [m]
+  double drag_coefficient{1.1};      ///< Of a cylinder across the flow.
+  double internal_damping{0.006};    ///< Bending losses, as viscous drag per length [N s/m^2].
+  double friction{0.3};              ///< Coulomb, on obstacles.
   double floor_friction{0.4};
   double contact_stiffness{5000.0};  ///< Of an obstacle's surface under one contact [N/m].
 
@@ -125,7 +126,8 @@ class TetherChain {
   void assemble(double h, const Obstacles& obstacles, const EndLoad& end) noexcept;
   void assembleLinks(double h) noexcept;
   void assembleBentLink(double h, int link) noexcept;
-  [[nodiscard]] double linkForce(double h, int link, double length, double& stiffness) const noexcept;
+  [[nodiscard]] double linkForce(double h, int link, double length,
+                                 double& stiffness) const noexcept;
   void assembleGround(double h, double floor, double end_ground) noexcept;
   void assembleFaces(double h) noexcept;
   [[nodiscard]] double residual() const noexcept;

@@ -42,7 +42,7 @@ struct FaceContact {
   double offset{0.0};
   double force{0.0};     ///< Normal force at the end of the step [N].
   double friction{0.0};  ///< Friction as a viscous coefficient for this step [N s/m].
-  double flow{0.0};  ///< Speed of the material past the chain's frame, towards the drone [m/s].
+  double flow{0.0};      ///< Speed of the material past the chain's frame, towards the drone [m/s].
 };
 
 }  // namespace tautline::sim

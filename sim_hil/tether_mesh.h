@@ -2,9 +2,9 @@
 
 /// @file
 /// How the chain's nodes lie on the tether's material. Without edges they are evenly spaced, and
-/// pay-out is shared by all links. A link that is bent round an edge is kept centred on it by moving
-/// the nodes along the material, so that the tether can slide round the edge without a node passing
-/// it.
+/// pay-out is shared by all links. A link that is bent round an edge is kept centred on it by
+/// moving the nodes along the material, so that the tether can slide round the edge without a node
+/// passing it.
 
 #include "sim_hil/tether_contact.h"
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kForceTolerance = 1e-4;  // residual of one mass's force balance [N]
 constexpr int kMaxIterations = 25;
 constexpr int kMaxSearch = 8;
-constexpr double kFeetStiffness = 4.0;    // of the vehicle on the ground, relative to one contact
+constexpr double kFeetStiffness = 4.0;  // of the vehicle on the ground, relative to one contact
 
 Eigen::Matrix3d outer(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
   return a * b.transpose();
@@ -81,8 +81,8 @@ void TetherChain::assemble(double h, const Obstacles& obstacles, const EndLoad& 
   for (int i = 1; i <= n_; ++i) {
     const double inertia = mass_[at(i)] / (h * h);
     const double damping = drag_[at(i)] / h;
-    gradient_[at(i)] = inertia * (x_[at(i)] - x_free_[at(i)]) +
-                       damping * (x_[at(i)] - x_old_[at(i)] - h * wind_);
+    gradient_[at(i)] =
+        inertia * (x_[at(i)] - x_free_[at(i)]) + damping * (x_[at(i)] - x_old_[at(i)] - h * wind_);
     diagonal_[at(i)] = (inertia + damping) * Eigen::Matrix3d::Identity();
   }
   assembleLinks(h);
@@ -132,9 +132,9 @@ void TetherChain::assembleBentLink(double h, int j) noexcept {
   const double T = std::fmax(0.0, linkForce(h, j, w.length, stiffness));
   const Eigen::Vector3d& a = w.t_first;
   const Eigen::Vector3d& b = w.t_last;
-  const double moved = 0.5 * ((x_[at(j + 1)] - x_old_[at(j + 1)]).dot(b) +
-                              (x_[at(j)] - x_old_[at(j)]).dot(a)) +
-                       0.5 * h * (flow_[at(j)] + flow_[at(j + 1)]);
+  const double moved =
+      0.5 * ((x_[at(j + 1)] - x_old_[at(j + 1)]).dot(b) + (x_[at(j)] - x_old_[at(j)]).dot(a)) +
+      0.5 * h * (flow_[at(j)] + flow_[at(j + 1)]);
   const double half_rub = 0.5 * rub_[at(j)] * moved / h;
   const double half_slope = 0.25 * rub_[at(j)] / h;
   if (T <= 0.0) stiffness = 0.0;
@@ -175,8 +175,7 @@ void TetherChain::assembleFaces(double h) noexcept {
     if (depth <= 0.0) continue;
     const double friction = c.friction / h;
     const Eigen::Vector3d t = (x_old_[at(c.link + 1)] - x_old_[at(c.link)]).normalized();
-    Eigen::Vector3d slip =
-        p - a * x_old_[at(c.link)] - b * x_old_[at(c.link + 1)] + h * c.flow * t;
+    Eigen::Vector3d slip = p - a * x_old_[at(c.link)] - b * x_old_[at(c.link + 1)] + h * c.flow * t;
     slip -= c.normal * c.normal.dot(slip);
     const Eigen::Vector3d g = -c.force * c.normal + friction * slip;
     Eigen::Matrix3d K = (config_.contact_stiffness - friction) * outer(c.normal, c.normal);

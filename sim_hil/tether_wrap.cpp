@@ -47,9 +47,9 @@ void TetherWrap::add(const ConvexPrism& prism, int solid, int link, const Segmen
   // Before the first bend that is farther along the tether.
   const Eigen::Vector3d t = x_k - x_j;
   int place = 0;
-  while (place < count_ &&
-         (bend_[at(place)].link < link ||
-          (bend_[at(place)].link == link && (bend_[at(place)].point() - bend.point()).dot(t) < 0.0))) {
+  while (place < count_ && (bend_[at(place)].link < link ||
+                            (bend_[at(place)].link == link &&
+                             (bend_[at(place)].point() - bend.point()).dot(t) < 0.0))) {
     ++place;
   }
   for (int i = count_; i > place; --i) bend_[at(i)] = bend_[at(i - 1)];

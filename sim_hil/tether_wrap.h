@@ -28,8 +28,8 @@ class TetherWrap {
            const Eigen::Vector3d& x_j, const Eigen::Vector3d& x_k) noexcept;
 
   /// Slides bends along their edges where the tether pulls outside the friction cone; takes off
-  /// those that would pull away from their solid or have reached the end of their edge; hands a bend
-  /// to the next link when a node reaches it. `x` are the chain's nodes.
+  /// those that would pull away from their solid or have reached the end of their edge; hands a
+  /// bend to the next link when a node reaches it. `x` are the chain's nodes.
   void update(std::span<const Eigen::Vector3d> x, double friction) noexcept;
 
   /// Way of a bent link: points, length, directions at both ends and the sum of its turns.

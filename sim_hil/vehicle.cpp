@@ -10,7 +10,6 @@ constexpr double kGravity = 9.81;
 constexpr double kGimbalLimit = radians(90.0);
 constexpr double kTautTension = 0.1;  // below this the tether's direction says less and less [N]
 
-
 }  // namespace
 
 Vehicle::Vehicle(const VehicleConfig& config) noexcept : config_(config) {}
@@ -45,7 +44,8 @@ void Vehicle::step(double h, const VehicleSense& sense) noexcept {
   flight_time_ += h;
   if (phase_ == FlightPhase::kFlying) {
     yaw_ = wrapped(yaw_ + h * rates_.yaw);
-    gimbal_pitch_ = std::clamp(gimbal_pitch_ + h * rates_.gimbal_pitch, -kGimbalLimit, kGimbalLimit);
+    gimbal_pitch_ =
+        std::clamp(gimbal_pitch_ + h * rates_.gimbal_pitch, -kGimbalLimit, kGimbalLimit);
     gimbal_roll_ = std::clamp(gimbal_roll_ + h * rates_.gimbal_roll, -kGimbalLimit, kGimbalLimit);
   }
   filterDirection(h, sense);
@@ -111,8 +111,8 @@ double Vehicle::lever(const VehicleSense& sense) const noexcept {
 /// Complementary filter: the vehicle's own motion turns the tether at once, the sensed direction
 /// corrects slowly, so that waves on the tether do not shake the vehicle.
 void Vehicle::filterDirection(double h, const VehicleSense& sense) noexcept {
-  const Eigen::Vector3d sensed = unitVector({sense.tangent.elevation - sense.bias.elevation,
-                                             sense.tangent.azimuth - sense.bias.azimuth});
+  const Eigen::Vector3d sensed = unitVector(
+      {sense.tangent.elevation - sense.bias.elevation, sense.tangent.azimuth - sense.bias.azimuth});
   if (phase_ == FlightPhase::kSpoolUp) {
     direction_ = sensed;
     return;
@@ -124,8 +124,8 @@ void Vehicle::filterDirection(double h, const VehicleSense& sense) noexcept {
   direction_.normalize();
 }
 
-/// Weight + pull along the set-point direction + PD on the angle error. The angle error acts through
-/// the tether as a lever; damping is on the velocity relative to that of the set-point.
+/// Weight + pull along the set-point direction + PD on the angle error. The angle error acts
+/// through the tether as a lever; damping is on the velocity relative to that of the set-point.
 Eigen::Vector3d Vehicle::wantedForce(const VehicleSense& sense) const noexcept {
   const Polar target{setpoint_.elevation - sense.bias.elevation,
                      setpoint_.azimuth - sense.bias.azimuth};
@@ -145,9 +145,9 @@ Eigen::Vector3d Vehicle::wantedForce(const VehicleSense& sense) const noexcept {
   const double sa = std::sin(target.azimuth);
   const Eigen::Vector3d along_elevation(-se * sa, ce, -se * ca);
   const Eigen::Vector3d along_azimuth(ca, 0.0, -sa);
-  const Eigen::Vector3d v_target = sense.length_rate * d_target +
-                                   lever(sense) * (setpoint_rate_.elevation * along_elevation +
-                                            setpoint_rate_.azimuth * ce * along_azimuth);
+  const Eigen::Vector3d v_target =
+      sense.length_rate * d_target + lever(sense) * (setpoint_rate_.elevation * along_elevation +
+                                                     setpoint_rate_.azimuth * ce * along_azimuth);
   return Eigen::Vector3d(0.0, config_.mass * kGravity, 0.0) + config_.tension * d_target +
          correction + 2.0 * config_.damping * w * config_.mass * (v_target - sense.v_WD);
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 /// @file
-/// The flying vehicle: a point mass with a lagging thrust vector, and the onboard loop that holds the
-/// tether's tangent at a set-point direction by pulling on the taut tether. It has no position of its
-/// own: it feels the tether's direction and tension, and its velocity. World frame W.
+/// The flying vehicle: a point mass with a lagging thrust vector, and the onboard loop that holds
+/// the tether's tangent at a set-point direction by pulling on the taut tether. It has no position
+/// of its own: it feels the tether's direction and tension, and its velocity. World frame W.
 
 #include <cstdint>
 
@@ -16,34 +16,34 @@
 namespace tautline::sim {
 
 struct VehicleConfig {
-  double mass{0.618};           ///< [kg], 6 N.
-  double thrust_max{12.0};      ///< [N]
-  double thrust_min{0.6};       ///< With motors running [N].
-  double attitude_lag{0.15};    ///< Of the thrust direction [s].
-  double motor_lag{0.05};       ///< Of the thrust magnitude [s].
-  double tilt_max{radians(35)};  ///< [rad]
-  double drag{0.2};             ///< Body and rotors, linear [N/(m/s)].
-  double radius{0.15};          ///< What must not touch anything [m].
+  double mass{0.618};             ///< [kg], 6 N.
+  double thrust_max{12.0};        ///< [N]
+  double thrust_min{0.6};         ///< With motors running [N].
+  double attitude_lag{0.15};      ///< Of the thrust direction [s].
+  double motor_lag{0.05};         ///< Of the thrust magnitude [s].
+  double tilt_max{radians(35)};   ///< [rad]
+  double drag{0.2};               ///< Body and rotors, linear [N/(m/s)].
+  double radius{0.15};            ///< What must not touch anything [m].
   double survivable_impact{1.5};  ///< On the ground [m/s].
-  double tension{1.0};          ///< Pull on the tether that the onboard loop adds [N].
-  double bandwidth{2.2};        ///< Of the onboard angle loop [rad/s].
-  double damping{1.0};          ///< Its damping ratio without lags.
-  double correction_max{2.0};   ///< Largest force of the angle error [N].
-  double angle_filter{0.8};     ///< Of the sensed tether direction against the vehicle's motion [s].
-  double lever_min{0.3};        ///< Angle errors count as on a tether of at least ... [m]
-  double lever_max{8.0};        ///< ... and at most this length [m].
+  double tension{1.0};            ///< Pull on the tether that the onboard loop adds [N].
+  double bandwidth{2.2};          ///< Of the onboard angle loop [rad/s].
+  double damping{1.0};            ///< Its damping ratio without lags.
+  double correction_max{2.0};     ///< Largest force of the angle error [N].
+  double angle_filter{0.8};  ///< Of the sensed tether direction against the vehicle's motion [s].
+  double lever_min{0.3};     ///< Angle errors count as on a tether of at least ... [m]
+  double lever_max{8.0};     ///< ... and at most this length [m].
   double elevation_min{radians(-60)};  ///< Set-point limits [rad].
   double elevation_max{radians(89.5)};
   double takeoff_elevation{radians(50)};  ///< The set-point rises to at least this [rad].
-  double takeoff_rate{0.3};     ///< That rise [rad/s].
-  double spool_up{1.0};         ///< From motor start to lift [s].
-  double landing_rate{0.12};    ///< Descent of an emergency landing [m/s].
-  double battery{12.4};         ///< Ground battery when full [V].
-  double battery_life{1500.0};  ///< Time in flight until `battery_empty` [s].
-  double battery_empty{10.5};   ///< [V]
-  double battery_low{11.1};     ///< Flag LOW_BATT below [V].
-  double battery_critical{10.7};  ///< Flag CRIT_LOW_BATT below [V].
-  double backup_battery{4.15};  ///< On the vehicle [V].
+  double takeoff_rate{0.3};               ///< That rise [rad/s].
+  double spool_up{1.0};                   ///< From motor start to lift [s].
+  double landing_rate{0.12};              ///< Descent of an emergency landing [m/s].
+  double battery{12.4};                   ///< Ground battery when full [V].
+  double battery_life{1500.0};            ///< Time in flight until `battery_empty` [s].
+  double battery_empty{10.5};             ///< [V]
+  double battery_low{11.1};               ///< Flag LOW_BATT below [V].
+  double battery_critical{10.7};          ///< Flag CRIT_LOW_BATT below [V].
+  double backup_battery{4.15};            ///< On the vehicle [V].
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -82,9 +82,9 @@ struct VehicleConfig {
 
 /// Rates of the vehicle's own set-points.
 struct VehicleRates {
-  double elevation{0.0};  ///< [rad/s]
-  double azimuth{0.0};    ///< [rad/s], about +y.
-  double yaw{0.0};        ///< [rad/s], about +y.
+  double elevation{0.0};     ///< [rad/s]
+  double azimuth{0.0};       ///< [rad/s], about +y.
+  double yaw{0.0};           ///< [rad/s], about +y.
   double gimbal_pitch{0.0};  ///< [rad/s], up positive.
   double gimbal_roll{0.0};   ///< [rad/s]
 };
@@ -110,7 +110,8 @@ enum class FlightPhase : std::uint8_t {
 
 class Vehicle {
  public:
-  /// Parked, heading 0: body axes along the world axes. Real-time safe: no allocation, no locks, no exceptions.
+  /// Parked, heading 0: body axes along the world axes. Real-time safe: no allocation, no locks, no
+  /// exceptions.
   explicit Vehicle(const VehicleConfig& config) noexcept;
 
   /// Starts the motors if parked. The set-point becomes the tether's present direction.
@@ -156,7 +157,7 @@ class Vehicle {
   double gimbal_pitch_{0.0};
   double gimbal_roll_{0.0};
   double thrust_{0.0};
-  Eigen::Vector3d up_{Eigen::Vector3d::UnitY()};  // thrust direction
+  Eigen::Vector3d up_{Eigen::Vector3d::UnitY()};         // thrust direction
   Eigen::Vector3d direction_{Eigen::Vector3d::UnitZ()};  // filtered, of the tether at the vehicle
   double flight_time_{0.0};
 };

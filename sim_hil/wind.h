@@ -13,10 +13,10 @@ namespace tautline::sim {
 
 struct WindConfig {
   Eigen::Vector3d mean{Eigen::Vector3d::Zero()};  ///< [m/s] in W.
-  double gust{0.1};            ///< Standard deviation of each component [m/s].
-  double gust_time{1.5};       ///< Correlation time [s].
-  double wall_factor{1.0};     ///< Extra gust at a wall, relative to `gust`.
-  double wall_distance{0.5};   ///< Over which that extra decays by e [m].
+  double gust{0.1};                               ///< Standard deviation of each component [m/s].
+  double gust_time{1.5};                          ///< Correlation time [s].
+  double wall_factor{1.0};                        ///< Extra gust at a wall, relative to `gust`.
+  double wall_distance{0.5};                      ///< Over which that extra decays by e [m].
 
   template <class Visitor>
   void fields(Visitor& v) {

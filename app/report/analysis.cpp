@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "app/report/outcome.h"
 #include "lcmtypes/channels.h"
 
 namespace tautline::report {
@@ -38,19 +39,6 @@ void extend(std::optional<TimeSpan>& span, double t) {
   span->end = t;
 }
 
-bool isAirborne(VehiclePhase phase) {
-  return phase == VehiclePhase::kFlying || phase == VehiclePhase::kLanding;
-}
-
-// The mission that the executor worked on last; 0 = none.
-std::int64_t flownMission(const FlightLog& log) {
-  std::int64_t hash = 0;
-  for (const auto& m : log.mission) {
-    if (m.hash != 0 && m.state != MissionState::kIdle) hash = m.hash;
-  }
-  return hash;
-}
-
 // The simulator's truth rules where there is one: a vehicle may believe that it still flies.
 std::optional<TimeSpan> airborneSpan(const FlightLog& log) {
   std::optional<TimeSpan> span;
@@ -64,92 +52,31 @@ std::optional<TimeSpan> airborneSpan(const FlightLog& log) {
   return span;
 }
 
-void findMission(const FlightLog& log, FlightAnalysis& out) {
-  const std::int64_t hash = flownMission(log);
-  for (std::size_t i = 0; i < log.mission.size(); ++i) {
-    const MissionSample& m = log.mission[i];
-    if (m.hash != hash || m.state != MissionState::kRunning) continue;
-    const double end = i + 1 < log.mission.size() ? log.mission[i + 1].t : m.t;
+void findMission(const FlightLog& log, const std::vector<MissionSample>& mission,
+                 FlightAnalysis& out) {
+  for (std::size_t i = 0; i < mission.size(); ++i) {
+    const MissionSample& m = mission[i];
+    if (m.state != MissionState::kRunning) continue;
+    const double end = i + 1 < mission.size() ? mission[i + 1].t : m.t;
     extend(out.mission, m.t);
     out.mission->end = end;
-    if (!out.mission_running.empty() && out.mission_running.back().end >= m.t) {
-      out.mission_running.back().end = end;
-    } else {
-      out.mission_running.push_back({m.t, end});
-    }
   }
-  const auto plan = log.missions.find(hash);
-  if (hash != 0 && plan != log.missions.end()) out.plan = plan->second;
+  if (mission.empty()) return;
+  const auto plan = log.missions.find(mission.back().hash);
+  if (plan != log.missions.end()) out.plan = plan->second;
 }
 
-std::optional<double> touchdownSpeed(const std::vector<TruthSample>& truth) {
-  std::optional<double> speed;
-  for (std::size_t i = 1; i < truth.size(); ++i) {
-    if (truth[i].on_ground && !truth[i - 1].on_ground) speed = truth[i - 1].v_WD.norm();
-  }
-  return speed;
-}
-
-std::string outcomeText(const Outcome& o) {
-  std::string text;
-  if (o.mission_completed) {
-    text = "Mission completed";
-  } else if (o.mission_state == MissionState::kIdle) {
-    text = "No mission flown";
-  } else {
-    text = std::string("Mission not completed (") + nameOf(o.mission_state, kMissionStateNames);
-    if (o.mission_failure != MissionFailure::kNone)
-      text += std::string(": ") + nameOf(o.mission_failure, kMissionFailureNames);
-    text += "), " + std::to_string(o.waypoints_reached) + " of " +
-            std::to_string(o.waypoint_count) + " waypoints reached";
-  }
-  if (!o.flew) return text + "; never left the ground.";
-  if (o.crashed) return text + "; crashed.";
-  return text + (o.landed ? "; landed." : "; not landed.");
-}
-
-Outcome findOutcome(const FlightLog& log) {
-  Outcome out;
-  const std::int64_t hash = flownMission(log);
-  for (const auto& m : log.mission) {
-    if (hash == 0 || m.hash != hash) continue;
-    out.waypoint_count = std::max(out.waypoint_count, m.waypoint_count);
-    out.waypoints_reached = std::max(out.waypoints_reached, m.waypoint);
-    if (m.state == MissionState::kIdle) continue;
-    out.mission_completed = out.mission_completed || m.state == MissionState::kCompleted;
-    out.mission_state = m.state;
-    out.mission_failure = m.failure;
-  }
-  if (out.mission_completed) out.waypoints_reached = out.waypoint_count;
-
-  const bool vehicle_flew = std::any_of(log.vehicle.begin(), log.vehicle.end(),
-                                        [](const auto& v) { return isAirborne(v.phase); });
-  const bool truth_flew =
-      std::any_of(log.truth.begin(), log.truth.end(), [](const auto& s) { return !s.on_ground; });
-  out.flew = log.truth.empty() ? vehicle_flew : truth_flew;
-  out.touchdown_speed = touchdownSpeed(log.truth);
-  out.crashed = out.touchdown_speed.value_or(0.0) > kCrashSpeed;
-  const bool vehicle_down = log.vehicle.empty() ||
-                            log.vehicle.back().phase == VehiclePhase::kIdle ||
-                            log.vehicle.back().phase == VehiclePhase::kStopped;
-  const bool truth_down = log.truth.empty() || (log.truth.back().on_ground &&
-                                                !log.truth.back().motors_on && !out.crashed);
-  out.landed = out.flew && vehicle_down && truth_down;
-  out.text = outcomeText(out);
-  return out;
-}
-
-CrossTrackReport crossTrack(const FlightLog& log, const std::vector<PositionSample>& position) {
+CrossTrackReport crossTrack(const std::vector<MissionSample>& mission,
+                            const std::vector<PositionSample>& position) {
   CrossTrackReport out;
-  const std::int64_t hash = flownMission(log);
   std::vector<double> of_segment;
   const auto finishSegment = [&] {
     if (!out.segments.empty()) out.segments.back().cross_track = summarize(of_segment);
     of_segment.clear();
   };
-  for (const auto& m : log.mission) {
+  for (const auto& m : mission) {
     const bool under_way = m.state == MissionState::kRunning || m.state == MissionState::kHolding;
-    if (hash == 0 || m.hash != hash || !under_way) continue;
+    if (!under_way) continue;
     if (m.state == MissionState::kRunning &&
         (out.segments.empty() || out.segments.back().waypoint != m.waypoint)) {
       finishSegment();
@@ -384,14 +311,15 @@ FlightAnalysis analyze(const FlightLog& log) {
   if (!out.has_truth) out.position = out.estimate;
 
   out.airborne = airborneSpan(log);
-  findMission(log, out);
-  out.outcome = findOutcome(log);
-  out.cross_track = crossTrack(log, out.position);
+  const std::vector<MissionSample> mission = ofLastMission(log);
+  findMission(log, mission, out);
+  out.modes = modeSpans(log.states);
+  out.outcome = findOutcome(log, mission, out.modes);
+  out.cross_track = crossTrack(mission, out.position);
   out.localization = localization(log, out.airborne);
   out.smoothness = smoothness(log, out);
   out.loop = loopReport(log.loop);
   out.channels = channelReports(log);
-  out.modes = modeSpans(log.states);
   out.tether = tetherReport(log, out.airborne);
   out.notes = notesOn(log, out);
   return out;

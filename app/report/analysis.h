@@ -41,6 +41,8 @@ struct Outcome {
   std::optional<double> touchdown_speed;            ///< Simulator only: last touch-down [m/s].
   MissionState mission_state{MissionState::kIdle};  ///< Last one of the flown mission.
   MissionFailure mission_failure{MissionFailure::kNone};
+  std::string
+      interruption;  ///< Mode and conditions that ended the mission before its time; empty = none.
   int waypoints_reached{};
   int waypoint_count{};
   std::string text;  ///< One sentence for people.
@@ -131,9 +133,8 @@ struct FlightAnalysis {
   std::vector<PositionSample> position;  ///< Truth, else valid estimates.
   std::vector<PositionSample> estimate;  ///< Valid estimates.
   std::optional<PlannedMission>
-      plan;  ///< Of the flown mission, as far as its chunks are in the log.
-  std::vector<TimeSpan> mission_running;  ///< While the executor was between waypoints.
-  std::optional<TimeSpan> mission;        ///< From its first to its last running moment.
+      plan;                         ///< Of the flown mission, as far as its chunks are in the log.
+  std::optional<TimeSpan> mission;  ///< From its first to its last running moment.
   std::optional<TimeSpan> airborne;
   Outcome outcome;
   CrossTrackReport cross_track;

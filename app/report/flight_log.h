@@ -17,8 +17,10 @@
 
 #include <Eigen/Core>
 
+#include "app/station/events.h"
 #include "common/estimate.h"
 #include "common/vehicle.h"
+#include "control/motion_executor.h"
 #include "control/supervisor.h"
 
 namespace tautline::report {
@@ -81,31 +83,6 @@ struct CommandSample {
   double azimuth_rate{};
 };
 
-/// mission_status_t::state.
-enum class MissionState : std::uint8_t { kIdle, kRunning, kHolding, kPaused, kCompleted, kFailed };
-inline constexpr std::array<EnumName<MissionState>, 6> kMissionStateNames{
-    {{MissionState::kIdle, "idle"},
-     {MissionState::kRunning, "running"},
-     {MissionState::kHolding, "holding"},
-     {MissionState::kPaused, "paused"},
-     {MissionState::kCompleted, "completed"},
-     {MissionState::kFailed, "failed"}}};
-
-/// mission_status_t::failure.
-enum class MissionFailure : std::uint8_t {
-  kNone,
-  kTimeout,
-  kNoProgress,
-  kBadContact,
-  kUnreachable
-};
-inline constexpr std::array<EnumName<MissionFailure>, 5> kMissionFailureNames{
-    {{MissionFailure::kNone, "none"},
-     {MissionFailure::kTimeout, "waypoint time-out"},
-     {MissionFailure::kNoProgress, "no progress"},
-     {MissionFailure::kBadContact, "bad contact"},
-     {MissionFailure::kUnreachable, "unreachable"}}};
-
 struct MissionSample {
   double t{};
   std::int64_t hash{};
@@ -132,13 +109,6 @@ struct LoopSample {
   std::int64_t publish_errors{};
   std::int64_t commands_refused{};
 };
-
-enum class Severity : std::uint8_t { kInfo, kWarning, kError, kCritical };
-inline constexpr std::array<EnumName<Severity>, 4> kSeverityNames{
-    {{Severity::kInfo, "info"},
-     {Severity::kWarning, "warning"},
-     {Severity::kError, "error"},
-     {Severity::kCritical, "critical"}}};
 
 struct LoggedEvent {
   double t{};

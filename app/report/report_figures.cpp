@@ -308,7 +308,11 @@ std::vector<NamedFigure> reportFigures(const FlightLog& log, const FlightAnalysi
                    "Distance from the planned segment, and of the estimate from the truth.", true,
                    errors(log, flight)});
   }
-  if (!log.loop.empty()) {
+  // In lock-step the clock stands still during a cycle: there is nothing to see.
+  const auto took_time = [](const LoopSample& s) {
+    return s.lateness_max > 0.0 || s.work_max > 0.0;
+  };
+  if (std::any_of(log.loop.begin(), log.loop.end(), took_time)) {
     out.push_back({"loop", "How late the loop woke up and how long it worked, each second.", true,
                    loopTiming(log)});
   }

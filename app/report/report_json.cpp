@@ -13,6 +13,11 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
+// Whole microseconds, as in the log: no rounding noise of the subtraction.
+Json seconds(double value) { return number(std::round(value * 1e6) / 1e6); }
+
+Json seconds(const std::optional<double>& value) { return value ? seconds(*value) : Json(nullptr); }
+
 Json vector3(const Eigen::Vector3d& v) {
   return Json::array({number(v.x()), number(v.y()), number(v.z())});
 }
@@ -32,13 +37,14 @@ Json meanOf(const std::optional<Summary>& s) { return s ? number(s->mean) : Json
 Json maxOf(const std::optional<Summary>& s) { return s ? number(s->max) : Json(nullptr); }
 
 Json lengthOf(const std::optional<TimeSpan>& span) {
-  return span ? number(span->length()) : Json(nullptr);
+  return span ? seconds(span->length()) : Json(nullptr);
 }
 
 Json missionJson(const FlightAnalysis& flight) {
   const Outcome& o = flight.outcome;
   return {{"state", nameOf(o.mission_state, kMissionStateNames)},
           {"failure", nameOf(o.mission_failure, kMissionFailureNames)},
+          {"interruption", o.interruption},
           {"waypoints_reached", o.waypoints_reached},
           {"waypoint_count", o.waypoint_count},
           {"plan_in_log", flight.plan && flight.plan->complete()}};
@@ -52,8 +58,8 @@ Json crossTrackJson(const FlightAnalysis& flight) {
     Json row = {{"waypoint", s.waypoint},
                 {"start_m", vector3(s.start)},
                 {"target_m", vector3(s.target)},
-                {"begin_s", number(s.time.begin)},
-                {"duration_s", number(s.time.length())}};
+                {"begin_s", seconds(s.time.begin)},
+                {"duration_s", seconds(s.time.length())}};
     row.update(summary(s.cross_track));
     row["closest_approach_m"] = number(s.closest_approach);
     out["segments"].push_back(row);
@@ -104,7 +110,7 @@ Json tetherJson(const TetherReport& r) {
               {"tension_min_n", number(r.tension_min)}, {"tension_max_n", number(r.tension_max)},
               {"contacts_formed", r.contacts_formed},   {"contact_changes", Json::array()}};
   for (const auto& c : r.contact_changes) {
-    out["contact_changes"].push_back({{"t_s", number(c.t)},
+    out["contact_changes"].push_back({{"t_s", seconds(c.t)},
                                       {"change", c.formed ? "formed" : "relaxed"},
                                       {"active_contact", c.id},
                                       {"contact_count", c.count},
@@ -119,8 +125,8 @@ Json channelsJson(const std::vector<ChannelReport>& channels) {
     out.push_back({{"channel", c.name},
                    {"messages", c.messages},
                    {"undecodable", c.undecodable},
-                   {"median_period_s", number(c.period)},
-                   {"longest_gap_s", number(c.longest_gap)},
+                   {"median_period_s", seconds(c.period)},
+                   {"longest_gap_s", seconds(c.longest_gap)},
                    {"gaps", c.gaps}});
   }
   return out;
@@ -130,8 +136,8 @@ Json modesJson(const std::vector<ModeSpan>& modes) {
   Json out = Json::array();
   for (const auto& m : modes) {
     out.push_back({{"mode", nameOf(m.mode, kModeNames)},
-                   {"begin_s", number(m.time.begin)},
-                   {"duration_s", number(m.time.length())},
+                   {"begin_s", seconds(m.time.begin)},
+                   {"duration_s", seconds(m.time.length())},
                    {"reasons", describe(m.reasons)}});
   }
   return out;
@@ -140,7 +146,7 @@ Json modesJson(const std::vector<ModeSpan>& modes) {
 Json eventsJson(const std::vector<LoggedEvent>& events) {
   Json out = Json::array();
   for (const auto& e : events) {
-    out.push_back({{"t_s", number(e.t)},
+    out.push_back({{"t_s", seconds(e.t)},
                    {"severity", nameOf(e.severity, kSeverityNames)},
                    {"code", e.code},
                    {"text", e.text},
@@ -167,7 +173,7 @@ std::string reportJson(const FlightLog& log, const FlightAnalysis& flight) {
   out["localization_mean_m"] = meanOf(flight.localization.all);
   out["localization_max_m"] = maxOf(flight.localization.all);
   out["overruns"] = flight.loop.last ? Json(flight.loop.last->overruns) : Json(nullptr);
-  out["durations"] = {{"log_s", number(log.duration)},
+  out["durations"] = {{"log_s", seconds(log.duration)},
                       {"airborne_s", lengthOf(flight.airborne)},
                       {"mission_s", lengthOf(flight.mission)}};
   out["start_utime_us"] = log.start_utime;

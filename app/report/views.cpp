@@ -41,21 +41,36 @@ plot::Polygon outline(View view, const Prism& prism) {
 Bounds boundsOf(const Drawing& drawing) {
   Bounds out;
   for (const auto& curve : drawing.curves) {
+    if (curve.background) continue;
     for (const auto& p : curve.points) out.include(p);
   }
   for (const auto& marker : drawing.markers) out.include(marker.at);
-  for (const auto& box : drawing.boxes) {
-    out.include(box.min);
-    out.include(box.max);
-  }
-  for (const auto& prism : drawing.prisms) {
-    for (const auto& zx : prism.footprint) {
-      out.include({zx.y(), prism.y_min, zx.x()});
-      out.include({zx.y(), prism.y_max, zx.x()});
-    }
-  }
   if (out.min.x() > out.max.x()) out.min = out.max = Eigen::Vector3d::Zero();
   return out;
+}
+
+// Of the plot itself, without its labels [px].
+struct PlotSize {
+  double width{};
+  double height{};
+};
+
+// [m/px] at which all of `bounds` is seen, with a margin.
+double scaleFor(View view, const Bounds& bounds, const PlotSize& size) {
+  constexpr double kMargin = 1.25;
+  constexpr double kSmallest =
+      0.5;  // [m] A drone that stays where it is does not need a microscope.
+  const plot::Point a = project(view, bounds.min);
+  const plot::Point b = project(view, bounds.max);
+  return kMargin * std::max(std::max(b.x - a.x, kSmallest) / size.width,
+                            std::max(b.y - a.y, kSmallest) / size.height);
+}
+
+void setLimits(plot::Panel& panel, View view, const Bounds& bounds, const PlotSize& size,
+               double scale) {
+  const plot::Point middle = project(view, 0.5 * (bounds.min + bounds.max));
+  panel.x.limits = {middle.x - 0.5 * scale * size.width, middle.x + 0.5 * scale * size.width};
+  panel.y.limits = {middle.y - 0.5 * scale * size.height, middle.y + 0.5 * scale * size.height};
 }
 
 plot::Axis axis(const char* label, bool reversed = false) {
@@ -85,7 +100,8 @@ void addScene(Drawing& drawing, const Scene& scene) {
                                        {b.x(), b.y(), a.z()}},
                             .style = plot::Style::kLine,
                             .colour = Colour::kLightGrey,
-                            .width = 1.2});
+                            .width = 1.2,
+                            .background = true});
 }
 
 plot::Point project(View view, const Eigen::Vector3d& p) {
@@ -142,7 +158,11 @@ plot::Panel viewPanel(const Drawing& drawing, View view) {
 plot::Figure viewFigure(const Drawing& drawing, View view) {
   plot::Figure figure{
       .title = {}, .width_px = 800, .height_px = 700, .panels = {viewPanel(drawing, view)}};
-  if (!drawing.title.empty()) figure.panels.front().title += " – " + drawing.title;
+  plot::Panel& panel = figure.panels.front();
+  if (!drawing.title.empty()) panel.title += " – " + drawing.title;
+  const Bounds bounds = boundsOf(drawing);
+  const PlotSize size{.width = 660.0, .height = 550.0};
+  setLimits(panel, view, bounds, size, scaleFor(view, bounds, size));
   return figure;
 }
 
@@ -153,36 +173,21 @@ plot::Figure viewsFigure(const Drawing& drawing) {
                       .width_px = 1000,
                       .height_px = 900,
                       .panels = {}};
-  const auto panel = [&drawing](View view) {
+  // One scale for all three, so that a thing is as large in each, and above or beside itself.
+  const Bounds bounds = boundsOf(drawing);
+  const PlotSize size{.width = 400.0, .height = 330.0};
+  double scale = 0.0;
+  for (const auto& view : kViewNames) scale = std::max(scale, scaleFor(view.value, bounds, size));
+  const auto panel = [&](View view) {
     plot::Panel out = viewPanel(drawing, view);
     out.legend = false;
+    setLimits(out, view, bounds, size, scale);
     return out;
   };
-  plot::Panel top = panel(View::kTop);
-  plot::Panel front = panel(View::kFront);
-  plot::Panel side = panel(View::kSide);
-
-  // One scale for all three, so that a thing is as large in each, and above or beside itself.
-  constexpr double kPlotWidth = 400.0;  // [px] Of one panel, without its labels.
-  constexpr double kPlotHeight = 330.0;
-  const Bounds bounds = boundsOf(drawing);
-  const Eigen::Vector3d middle = 0.5 * (bounds.min + bounds.max);
-  const Eigen::Vector3d extent = bounds.max - bounds.min;
-  constexpr double kMargin = 1.12;
-  const double scale = kMargin * std::max({extent.x() / kPlotWidth, extent.z() / kPlotHeight,
-                                           extent.y() / kPlotHeight, 1e-3});
-  const auto around = [scale](double at, double pixels) {
-    return plot::Limits{at - 0.5 * scale * pixels, at + 0.5 * scale * pixels};
-  };
-  top.x.limits = front.x.limits = around(middle.x(), kPlotWidth);
-  top.y.limits = around(middle.z(), kPlotHeight);
-  side.x.limits = around(middle.z(), kPlotWidth);
-  front.y.limits = side.y.limits = around(middle.y(), kPlotHeight);
-
   plot::Panel legend = viewPanel(drawing, View::kTop);
   legend.title = {};
   legend.legend_only = true;
-  figure.panels = {top, legend, front, side};
+  figure.panels = {panel(View::kTop), legend, panel(View::kFront), panel(View::kSide)};
   return figure;
 }
 

@@ -32,6 +32,7 @@ struct SpaceCurve {
   plot::Colour colour{plot::Colour::kBlue};
   double width{1.6};
   plot::Symbol symbol{plot::Symbol::kDot};
+  bool background{false};  ///< Does not widen the views.
 };
 
 struct SpaceMarker {
@@ -43,7 +44,8 @@ struct SpaceMarker {
   std::string name{};  ///< In the legend; empty = not listed.
 };
 
-/// What is to be seen, in drawing order: obstacles, curves, markers.
+/// What is to be seen, in drawing order: obstacles, curves, markers. The views are as large as
+/// curves and markers need; obstacles and room are seen as far as they reach into them.
 struct Drawing {
   std::string title{};
   std::vector<Box> boxes{};
@@ -57,7 +59,7 @@ void addScene(Drawing& drawing, const Scene& scene);
 
 [[nodiscard]] plot::Point project(View view, const Eigen::Vector3d& p);
 
-/// One view as a panel of equal aspect.
+/// One view as a panel of equal aspect, without limits.
 [[nodiscard]] plot::Panel viewPanel(const Drawing& drawing, View view);
 
 /// One view as a figure of its own.

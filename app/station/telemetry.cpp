@@ -68,10 +68,11 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
 
   const bool due = in.now >= next_state_;
   if (due || out.command.action != VehicleAction::kNone) sendCommand(in.now, out.command);
-  // A change of mode is told at once, so that clients need not wait for the next round.
+  // A change of mode is told at once, so that clients need not wait for the next round; the mission first, so that who sees
+  // the mode change knows how the mission ended.
   if (due || out.supervision.changed) {
-    sendStation(in.now, out);
     sendMission(in.now, out);
+    sendStation(in.now, out);
   }
   if (!due) return;
   next_state_ = in.now + state_period_;

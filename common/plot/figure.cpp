@@ -371,7 +371,7 @@ std::string gnuplotScript(const Figure& figure) {
   std::string out = "set terminal svg size " + std::to_string(figure.width_px) + "," +
                     std::to_string(figure.height_px) +
                     " fixed noenhanced font 'sans-serif,12' background '#ffffff'\n";
-  out += "set encoding utf8\nset format '%g'\n";
+  out += "set encoding utf8\nset format '%g'\nset clip two\n";
   // Viridis, abridged: even steps of lightness, readable in grey.
   out += "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n";
   out +=

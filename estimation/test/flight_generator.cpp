@@ -75,22 +75,22 @@ void FlightGenerator::step() {
     next_sample_ = now_ + fromSeconds(1.0 / options_.rate);
     sense();
   }
-  if (pending_ && now_ >= arrival_) {
-    frame_ = in_transit_;
-    pending_ = false;
+  while (!in_transit_.empty() && now_ >= in_transit_.front().arrival) {
+    frame_ = in_transit_.front().frame;
+    in_transit_.pop_front();
   }
 }
 
 void FlightGenerator::sense() {
   const FlightOptions& o = options_;
-  in_transit_.reel.value.length =
+  sensed_.reel.value.length =
       std::max(0.0, quantize((q_.L + anchor_.L_static) / o.reel_scale + o.length_sigma * normal(),
                              o.length_quantum));
   const double T_A = T_ - o.w * (truePosition().y() - anchor_.p_WA.y());
   if (o.has_reel_tension) {
-    in_transit_.reel.value.tension = T_A * (1.0 + o.reel_tension_sigma * normal());
+    sensed_.reel.value.tension = T_A * (1.0 + o.reel_tension_sigma * normal());
   }
-  TetherAngles& angles = in_transit_.angles.value;
+  TetherAngles& angles = sensed_.angles.value;
   constexpr double kVertical = 1.5707963;
   angles.theta =
       std::clamp(quantize(q_.theta + o.elevation_bias + o.angle_sigma * normal(), o.angle_quantum),
@@ -107,22 +107,21 @@ void FlightGenerator::sense() {
       Eigen::Vector3d(out * std::sin(q_.phi), up, out * std::cos(q_.phi)).normalized();
   const Eigen::AngleAxisd noise_x(o.lean_sigma * normal(), Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd noise_z(o.lean_sigma * normal(), Eigen::Vector3d::UnitZ());
-  in_transit_.attitude.value.R_WB =
-      noise_x * noise_z * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), n) *
-      Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY());
-  in_transit_.vehicle.value.phase = t_ > 0.0 ? phase_in_flight : VehiclePhase::kIdle;
+  sensed_.attitude.value.R_WB = noise_x * noise_z *
+                                Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), n) *
+                                Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY());
+  sensed_.vehicle.value.phase = t_ > 0.0 ? phase_in_flight : VehiclePhase::kIdle;
 
   const auto stamp = [&](auto& sample) {
     sample.time = now_;
     sample.valid = true;
     ++sample.sequence;
   };
-  stamp(in_transit_.reel);
-  stamp(in_transit_.angles);
-  stamp(in_transit_.vehicle);
-  if (o.has_attitude) stamp(in_transit_.attitude);
-  arrival_ = now_ + fromSeconds(o.latency);
-  pending_ = true;
+  stamp(sensed_.reel);
+  stamp(sensed_.angles);
+  stamp(sensed_.vehicle);
+  if (o.has_attitude) stamp(sensed_.attitude);
+  in_transit_.push_back({now_ + fromSeconds(o.latency), sensed_});
 }
 
 }  // namespace tautline::testing

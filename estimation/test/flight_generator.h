@@ -7,6 +7,7 @@
 /// (common/testing/catenary_oracle.h). No formula is shared with the code under test.
 
 #include <cstdint>
+#include <deque>
 #include <random>
 
 #include <Eigen/Core>
@@ -100,9 +101,12 @@ class FlightGenerator {
   Anchor anchor_;
   double start_height_;  // height readings count from here
   SensorFrame frame_;
-  SensorFrame in_transit_;
-  Time arrival_{};
-  bool pending_{false};
+  SensorFrame sensed_;
+  struct Transit {
+    Time arrival;
+    SensorFrame frame;
+  };
+  std::deque<Transit> in_transit_;
   VehicleCommand command_;
 };
 

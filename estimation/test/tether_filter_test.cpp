@@ -123,7 +123,7 @@ TEST(TetherFilter, CovarianceStaysSymmetricAndPositive) {
     const TetherSegment s = segmentTo(filter.p(), filter.T(), kTetherWeight);
     filter.updateLength(s.L, 0.05, 1.0, anchor);
     filter.updateAngles(s.theta_D, s.phi, 0.05, 1.0, anchor);
-    filter.updateAltitude(filter.p().y() - 1.0, 0.05, 1.0);
+    filter.updateAltitude(filter.p().y() - 1.0, 0.05, 1.0, anchor);
     filter.updateLean(Eigen::Quaterniond::Identity(), 0.05, 1.0, anchor);
   }
   EXPECT_EQ(filter.P(), filter.P().transpose());

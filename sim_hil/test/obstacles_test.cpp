@@ -74,7 +74,8 @@ TEST(Obstacles, AVehicleTouchesWallsButStandsOnTops) {
 /// Deepest point of the segment in the solid by brute force.
 double deepest(const ConvexPrism& prism, const Eigen::Vector3d& p0, const Eigen::Vector3d& p1) {
   double d = 1e9;
-  for (int i = 0; i <= 400; ++i) d = std::fmin(d, signedDistance(prism, p0 + i / 400.0 * (p1 - p0)));
+  for (int i = 0; i <= 400; ++i)
+    d = std::fmin(d, signedDistance(prism, p0 + i / 400.0 * (p1 - p0)));
   return d;
 }
 

@@ -171,9 +171,8 @@ TEST(TetherChain, PendulumPeriod) {
       (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
   // Compound pendulum: point mass and thin rod.
   const double rod = config.density * L;
-  const double want =
-      2.0 * kPi * std::sqrt(L * (m + rod / 3.0) / (kG * (m + rod / 2.0))) *
-      (1.0 + amplitude * amplitude / 16.0);
+  const double want = 2.0 * kPi * std::sqrt(L * (m + rod / 3.0) / (kG * (m + rod / 2.0))) *
+                      (1.0 + amplitude * amplitude / 16.0);
   EXPECT_NEAR(period, want, 0.003 * want);
 }
 
@@ -245,7 +244,8 @@ TEST_P(Wrap, RoundAnEdgeAndOffAgain) {
     const Eigen::Vector3d p = c.point();
     EXPECT_NEAR(p.x(), 0.5, 0.01);
     EXPECT_NEAR(p.z(), 1.4, 0.01);
-    // Without friction the tether takes the shortest way; with it, it may stay where it first touched.
+    // Without friction the tether takes the shortest way; with it, it may stay where it first
+    // touched.
     const double share = std::hypot(0.5, 1.4) / (std::hypot(0.5, 1.4) + std::hypot(1.1, 0.4));
     if (config.friction == 0.0) {
       EXPECT_NEAR(p.y(), 0.6 * share, 0.03);

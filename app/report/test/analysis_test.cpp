@@ -163,6 +163,29 @@ TEST(Analysis, AnotherMissionsCompletionDoesNotCount) {
   EXPECT_TRUE(analyze(log).outcome.mission_completed);
 }
 
+// The way back undoes the mission's legs under its hash, and its end is no completed mission.
+TEST(Analysis, TheWayBackIsNotTheMission) {
+  FlightLog log;
+  const auto at = [&log](double t, Mode mode, MissionState state) {
+    log.states.push_back({t, RunMode::kSim, mode, {}, kHash});
+    log.mission.push_back(running(t, 0, {0, 0, 0}, {1, 0, 0}));
+    log.mission.back().state = state;
+    log.truth.push_back(truthAt(t, {0, mode == Mode::kLand ? 9.0 : 0.5, 0}));
+  };
+  at(0, Mode::kTakeoff, MissionState::kCompleted);
+  at(1, Mode::kAuto, MissionState::kRunning);
+  at(2, Mode::kAuto, MissionState::kFailed);
+  at(3, Mode::kHold, MissionState::kFailed);
+  at(4, Mode::kLand, MissionState::kRunning);
+  at(5, Mode::kLand, MissionState::kCompleted);
+  const FlightAnalysis flight = analyze(log);
+  EXPECT_FALSE(flight.outcome.mission_completed);
+  EXPECT_EQ(flight.outcome.mission_state, MissionState::kFailed);
+  EXPECT_EQ(flight.outcome.interruption, "HOLD by the operator");
+  EXPECT_NEAR(flight.cross_track.all->max, 0.5, 1e-12);
+  EXPECT_NEAR(flight.mission->end, 2.0, 1e-12);
+}
+
 TEST(Analysis, GapsAndSignChanges) {
   FlightLog log;
   ChannelStats& stats = log.channels["ESTIMATE"];

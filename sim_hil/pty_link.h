@@ -1,0 +1,46 @@
+#pragma once
+
+/// @file
+/// A pseudo terminal whose slave stands in for the device's serial port, under a name of the user's
+/// choice. Clients may open, close and reopen it; nobody needs to read.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace tautline::sim {
+
+class PtyLink {
+ public:
+  /// Opens a pty in raw mode and makes `link` a symbolic link to its slave, atomically; an old link
+  /// is replaced. Throws InputError if `link` is something else than a link, or cannot be made. Not
+  /// real-time safe: start-up only.
+  explicit PtyLink(std::filesystem::path link);
+
+  /// Removes the link if it still is ours.
+  ~PtyLink();
+  PtyLink(const PtyLink&) = delete;
+  PtyLink& operator=(const PtyLink&) = delete;
+
+  /// Bytes from the client, 0 if there are none. Never blocks.
+  [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept;
+
+  /// Returns how many bytes the terminal took: less than all if the client does not read, all of
+  /// them, into nowhere, if there is no client. Never blocks.
+  [[nodiscard]] std::size_t write(std::span<const std::uint8_t> bytes) noexcept;
+
+  /// A client has the slave open, as of the last read().
+  [[nodiscard]] bool hasClient() const noexcept { return has_client_; }
+  /// The slave's own name, e.g. "/dev/pts/3".
+  [[nodiscard]] const std::string& slave() const noexcept { return slave_; }
+
+ private:
+  std::filesystem::path link_;
+  std::string slave_;
+  int master_{-1};
+  bool has_client_{false};
+};
+
+}  // namespace tautline::sim
