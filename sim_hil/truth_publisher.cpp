@@ -6,6 +6,7 @@
 #include <tautline/params_t.hpp>
 #include <tautline/sim_truth_t.hpp>
 
+#include "common/multicast.h"
 #include "lcmtypes/channels.h"
 
 namespace tautline::sim {
@@ -13,9 +14,11 @@ namespace tautline::sim {
 TruthPublisher::TruthPublisher(const std::string& url, std::string effective_config)
     : effective_config_(std::move(effective_config)) {
   if (url.empty()) return;
-  lcm_ = std::make_unique<lcm::LCM>(url);
-  if (lcm_->good()) return;
-  lcm_.reset();
+  if (hasMulticastRoute(url)) {
+    lcm_ = std::make_unique<lcm::LCM>(url);
+    if (lcm_->good()) return;
+    lcm_.reset();
+  }
   warning_ = "no LCM at " + url + ", going on without SIM_TRUTH; " + kMulticastRemedy;
 }
 

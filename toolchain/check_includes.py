@@ -66,7 +66,7 @@ def problems_in(root, path):
                 yield f'{where}: "{target}" is not a file of the project; include from the root'
             elif not any(is_under(target, f) for f in [me, *MAY_INCLUDE[me]]):
                 yield f'{where}: {me} may not include "{target}"; allowed: {", ".join([me, *MAY_INCLUDE[me]])}'
-            elif "/test/" in target or (is_under(target, "common/testing") and not is_test):
+            elif ("/test/" in target or is_under(target, "common/testing")) and not is_test:
                 yield f'{where}: "{target}" is for tests only'
             elif target in FORBIDDEN.get(me, []):
                 yield f'{where}: {me} may not include "{target}": its tether must be a model of its own'

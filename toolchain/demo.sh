@@ -81,6 +81,7 @@ done
 $armed || { tautline arm || true; fail "the station refuses to arm"; }
 tautline takeoff && tautline navigate "$mission" || flown=false
 tautline land || flown=false
+sleep 2  # the log's last seconds show the drone on the ground, rotors still
 
 stop INT "$logger"
 stop TERM "$station"

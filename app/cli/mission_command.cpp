@@ -81,7 +81,7 @@ ExitCode runCheck(const CheckArguments& arguments) {
     out["flyable"] = flyable;
     out["findings"] = json::array();
     for (const MissionFinding& finding : findings) {
-      out["findings"].push_back({{"severity", nameOf(finding.severity, kSeverityNames)},
+      out["findings"].push_back({{"severity", nameOf(finding.severity, kFindingSeverityNames)},
                                  {"row", finding.row},
                                  {"text", finding.text},
                                  {"remedy", finding.remedy}});
@@ -91,7 +91,7 @@ ExitCode runCheck(const CheckArguments& arguments) {
     fmt::print("{}\n", summary(mission));
     fmt::print("scene: {}\n", scene ? scene->name : "none, obstacles not checked");
     for (const MissionFinding& finding : findings) {
-      fmt::print("{}: {}{}{}{}\n", nameOf(finding.severity, kSeverityNames),
+      fmt::print("{}: {}{}{}{}\n", nameOf(finding.severity, kFindingSeverityNames),
                  finding.row.empty() ? "" : finding.row + ": ", finding.text,
                  finding.remedy.empty() ? "" : "; ", finding.remedy);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <random>
 
+#include "app/lcm_access.h"
 #include "app/station/mission_upload.h"
 #include "common/clock.h"
 #include "common/error.h"
@@ -22,10 +23,8 @@ std::int64_t newSession() {
 
 }  // namespace
 
-StationClient::StationClient(const std::string& lcm_url) : lcm_(lcm_url), session_(newSession()) {
-  if (!lcm_.good()) {
-    throw InputError({.key = "LCM " + lcm_url, .problem = "cannot be joined", .remedy = kMulticastRemedy}, ExitCode::kTimeout);
-  }
+StationClient::StationClient(const std::string& lcm_url) : lcm_(reachable(lcm_url)), session_(newSession()) {
+  if (!lcm_.good()) throw cannotJoin(lcm_url);
   lcm_.subscribe(channel::kStationState, &StationClient::onState, this);
   lcm_.subscribe(channel::kMissionStatus, &StationClient::onMission, this);
   lcm_.subscribe(channel::kEstimate, &StationClient::onEstimate, this);

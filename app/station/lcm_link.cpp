@@ -1,14 +1,13 @@
 #include "app/station/lcm_link.h"
 
+#include "app/lcm_access.h"
 #include "common/error.h"
 #include "lcmtypes/channels.h"
 
 namespace tautline {
 
-LcmLink::LcmLink(const std::string& url) : lcm_(url) {
-  if (!lcm_.good()) {
-    throw InputError({.key = "LCM " + url, .problem = "cannot be joined", .remedy = kMulticastRemedy}, ExitCode::kTimeout);
-  }
+LcmLink::LcmLink(const std::string& url) : lcm_(reachable(url)) {
+  if (!lcm_.good()) throw cannotJoin(url);
   lcm_.subscribe(channel::kOperatorCommand, &LcmLink::onCommand, this)->setQueueCapacity(kQueueCapacity);
   lcm_.subscribe(channel::kMissionChunk, &LcmLink::onChunk, this)->setQueueCapacity(kQueueCapacity);
 }

@@ -94,7 +94,7 @@ class Checker {
   }
 
  private:
-  void add(Severity severity, std::string text, std::string remedy = {}) {
+  void add(FindingSeverity severity, std::string text, std::string remedy = {}) {
     findings_.push_back({severity, row_, std::move(text), std::move(remedy)});
   }
 
@@ -107,13 +107,13 @@ class Checker {
   void checkReel(const Scene& scene) {
     const double difference = (scene.reel - mission_.reel_position).norm();
     if (difference > kSceneTolerance) {
-      add(Severity::kError,
+      add(FindingSeverity::kError,
           "reel_position_m is " + metres(difference) + " from the reel of scene '" + scene.name +
               "'",
           "check against the scene that the mission was made for");
     }
     if (!mission_.map_hash.empty() && mission_.map_hash != hashText(scene.hash)) {
-      add(Severity::kWarning,
+      add(FindingSeverity::kWarning,
           "scene '" + scene.name + "' has changed since the mission was made: its hash is " +
               hashText(scene.hash) + ", map_hash says " + mission_.map_hash,
           "check the findings below, then update map_hash");
@@ -127,11 +127,11 @@ class Checker {
         std::any_of(stacks_.begin(), stacks_.end(), [&](const std::vector<int>& stack) {
           return std::find(stack.begin(), stack.end(), contact.id) != stack.end();
         });
-    if (!used) add(Severity::kWarning, "no waypoint uses " + anchorName(contact.id), "remove it");
+    if (!used) add(FindingSeverity::kWarning, "no waypoint uses " + anchorName(contact.id), "remove it");
     if (!scene_) return;
     const double distance = clearance(contact.p_WC, *scene_);
     if (std::abs(distance) > kOnSurface) {
-      add(Severity::kError,
+      add(FindingSeverity::kError,
           distance < 0.0 ? metres(-distance) + " inside an obstacle"
                          : "no obstacle within " + metres(kOnSurface),
           "move it to the edge that the tether will touch");
@@ -142,11 +142,11 @@ class Checker {
     const TetherCoordinates tether = toTether(position(0));
     if (tether.L <= limits_.anchor_margin) return;  // already reported
     if (plan_.waypoints[0].contact != kReelContact) {
-      add(Severity::kError, "starts with " + name(0) + " formed",
+      add(FindingSeverity::kError, "starts with " + name(0) + " formed",
           "start with contact 0: the drone takes off at the reel");
     }
     if (tether.theta < limits_.first_elevation_min || tether.theta > limits_.first_elevation_max) {
-      add(Severity::kError,
+      add(FindingSeverity::kError,
           "elevation " + degrees(tether.theta) + " from the reel is not reachable after take-off",
           "between " + degrees(limits_.first_elevation_min) + " and " +
               degrees(limits_.first_elevation_max));
@@ -157,14 +157,14 @@ class Checker {
     const Eigen::Vector3d p_AD = position(i) - anchor(i);
     const double distance = p_AD.norm();
     if (distance < limits_.anchor_margin) {
-      add(Severity::kError, metres(distance) + " from " + name(i),
+      add(FindingSeverity::kError, metres(distance) + " from " + name(i),
           "at least " + metres(limits_.anchor_margin));
     } else if (distance < limits_.tether_length_min) {
-      add(Severity::kError, "free tether " + metres(distance),
+      add(FindingSeverity::kError, "free tether " + metres(distance),
           "at least " + metres(limits_.tether_length_min));
     }
     if (position(i).y() < floor_ + limits_.floor_margin) {
-      add(Severity::kError, metres(position(i).y() - floor_) + " above the floor",
+      add(FindingSeverity::kError, metres(position(i).y() - floor_) + " above the floor",
           "at least " + metres(limits_.floor_margin));
     }
     checkTether(i, p_AD);
@@ -175,7 +175,7 @@ class Checker {
     const double r = std::hypot(p_AD.x(), p_AD.z());
     const CatenaryInverse tether = solveInverseCatenary(r, p_AD.y(), limits_.tension, w);
     if (tether.status == CatenaryStatus::kNotReachable) {
-      add(Severity::kError,
+      add(FindingSeverity::kError,
           "cannot be held at " + newtons(limits_.tension) + ": the tether's weight needs " +
               newtons(tether.T_min),
           "a higher point, a shorter tether or more tension");
@@ -183,13 +183,13 @@ class Checker {
     }
     const double total = staticLength(plan_, stacks_[at(i)]) + tether.L;
     if (total > limits_.tether_length_max) {
-      add(Severity::kError, "needs " + metres(total) + " of tether",
+      add(FindingSeverity::kError, "needs " + metres(total) + " of tether",
           "at most " + metres(limits_.tether_length_max));
     }
     const double lowest =
         anchor(i).y() - (tether.dips_below_anchor ? (tether.T_A - tether.H) / w : 0.0);
     if (tether.dips_below_anchor && lowest < floor_) {
-      add(Severity::kWarning, "at " + newtons(limits_.tension) + " the tether sags onto the floor",
+      add(FindingSeverity::kWarning, "at " + newtons(limits_.tension) + " the tether sags onto the floor",
           "a higher point or more tension");
     }
   }
@@ -203,16 +203,16 @@ class Checker {
     const std::size_t popped = before.size() > after.size() ? before.size() - after.size() : 0;
     const double jump =
         tautLength(plan_, after, position(i - 1)) - tautLength(plan_, before, position(i - 1));
-    add(Severity::kInfo, (popped > 0 ? "relaxes to " : "forms ") + name(i) +
+    add(FindingSeverity::kInfo, (popped > 0 ? "relaxes to " : "forms ") + name(i) +
                              ", tether length changes by " + metres(std::abs(jump)));
     if (std::abs(jump) > limits_.switch_jump) {
-      add(Severity::kWarning,
+      add(FindingSeverity::kWarning,
           "the tether does not lie on " + name(i) +
               " when it becomes the anchor: length jumps by " + metres(std::abs(jump)),
           "change the contact at a waypoint in line with both anchors");
     }
     if (popped > 1)
-      add(Severity::kWarning, "relaxes " + std::to_string(popped) + " contacts at once",
+      add(FindingSeverity::kWarning, "relaxes " + std::to_string(popped) + " contacts at once",
           "relax one a waypoint");
   }
 
@@ -220,13 +220,13 @@ class Checker {
     const Eigen::Vector3d& p = position(i - 1);
     const Eigen::Vector3d& q = position(i);
     if ((p - q).norm() < kSamePlace) {
-      add(Severity::kWarning, "same position as the waypoint before", "use hold_s to stay there");
+      add(FindingSeverity::kWarning, "same position as the waypoint before", "use hold_s to stay there");
       return;
     }
     const double nearest = distanceToSegment(anchor(i), p, q);
     const bool reported = (q - anchor(i)).norm() < limits_.anchor_margin;
     if (nearest < limits_.anchor_margin && !reported) {
-      add(Severity::kError, "on the way the drone passes " + metres(nearest) + " from " + name(i),
+      add(FindingSeverity::kError, "on the way the drone passes " + metres(nearest) + " from " + name(i),
           "at least " + metres(limits_.anchor_margin));
     }
     checkPole(i);
@@ -250,7 +250,7 @@ class Checker {
       if (next >= limits_.pole_radius) break;
       radius = std::min(radius, next);
     }
-    add(Severity::kInfo,
+    add(FindingSeverity::kInfo,
         "the drone comes within " + metres(radius) + " of the pole, the vertical above " + name(i));
   }
 
@@ -259,18 +259,18 @@ class Checker {
     const Eigen::Vector3d p = i == 0 ? q : position(i - 1);
     const double to_walls = std::min((q - scene_->min).minCoeff(), (scene_->max - q).minCoeff());
     if (to_walls < 0.0) {
-      add(Severity::kError, "outside the room of scene '" + scene_->name + "'",
+      add(FindingSeverity::kError, "outside the room of scene '" + scene_->name + "'",
           "inside its min_m and max_m");
     } else if (scene_->max.y() - q.y() < limits_.floor_margin) {
-      add(Severity::kError, metres(scene_->max.y() - q.y()) + " below the ceiling",
+      add(FindingSeverity::kError, metres(scene_->max.y() - q.y()) + " below the ceiling",
           "at least " + metres(limits_.floor_margin));
     }
     if (clearance(q, *scene_) < 0.0) {
-      add(Severity::kError, "inside an obstacle", "move it out");
+      add(FindingSeverity::kError, "inside an obstacle", "move it out");
       return;
     }
     if (const auto hit = firstHit(p, q, *scene_)) {
-      add(Severity::kError,
+      add(FindingSeverity::kError,
           "the way from the waypoint before leads through obstacle '" + hit->obstacle + "'",
           "fly round it");
       return;
@@ -289,7 +289,7 @@ class Checker {
       nearest = std::min({nearest, clearance(x, *scene_), low.x(), low.z(), high.x(), high.z()});
     }
     if (nearest < limits_.obstacle_margin) {
-      add(Severity::kWarning,
+      add(FindingSeverity::kWarning,
           "the drone comes within " + metres(nearest) + " of an obstacle or wall",
           "at least " + metres(limits_.obstacle_margin));
     }
@@ -309,7 +309,7 @@ class Checker {
       }
     }
     if (deepest > limits_.tether_cut) {
-      add(Severity::kError,
+      add(FindingSeverity::kError,
           "the tether from " + name(i) + " cuts " + metres(deepest) + " into obstacle '" +
               obstacle + "' on the way",
           "form a contact on that obstacle, or relax later");
@@ -335,7 +335,7 @@ std::vector<MissionFinding> checkMission(const Mission& mission, const MissionLi
 
 bool isFlyable(const std::vector<MissionFinding>& findings) noexcept {
   return std::none_of(findings.begin(), findings.end(), [](const MissionFinding& finding) {
-    return finding.severity == Severity::kError;
+    return finding.severity == FindingSeverity::kError;
   });
 }
 

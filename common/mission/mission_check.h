@@ -15,16 +15,16 @@
 
 namespace tautline {
 
-enum class Severity : std::uint8_t {
+enum class FindingSeverity : std::uint8_t {
   kError,    ///< Do not fly.
   kWarning,  ///< Flyable, probably not what was meant.
   kInfo,     ///< Worth knowing.
 };
-inline constexpr std::array<EnumName<Severity>, 3> kSeverityNames{
-    {{Severity::kError, "error"}, {Severity::kWarning, "warning"}, {Severity::kInfo, "info"}}};
+inline constexpr std::array<EnumName<FindingSeverity>, 3> kFindingSeverityNames{
+    {{FindingSeverity::kError, "error"}, {FindingSeverity::kWarning, "warning"}, {FindingSeverity::kInfo, "info"}}};
 
 struct MissionFinding {
-  Severity severity{Severity::kInfo};
+  FindingSeverity severity{FindingSeverity::kInfo};
   std::string row;     ///< "waypoints[3]", "contacts[0]"; empty: the whole mission.
   std::string text;    ///< What was found, with its numbers.
   std::string remedy;  ///< What to do about it; empty for information.

@@ -18,7 +18,7 @@ using Chunk = tautline::mission_chunk_t;
 
 std::unique_ptr<MissionPlan> makePlan(int waypoints, int contacts) {
   auto plan = std::make_unique<MissionPlan>();
-  plan->hash = 0x1234'5678'9abcULL + static_cast<std::uint64_t>(waypoints);
+  plan->hash = 0x123456789abcU + static_cast<std::uint64_t>(waypoints);
   plan->waypoint_count = waypoints;
   plan->contact_count = contacts;
   for (int i = 0; i < contacts; ++i) plan->contacts[static_cast<std::size_t>(i)] = {10 + i, {0.1 * i, 1.0, -0.2 * i}};

@@ -41,7 +41,7 @@ Scene pillarScene() {
 std::string textOf(const std::vector<MissionFinding>& findings) {
   std::string text;
   for (const MissionFinding& f : findings) {
-    text += std::string(nameOf(f.severity, kSeverityNames)) + " " + f.row + ": " + f.text + "\n";
+    text += std::string(nameOf(f.severity, kFindingSeverityNames)) + " " + f.row + ": " + f.text + "\n";
   }
   return text;
 }
@@ -116,7 +116,7 @@ TEST(MissionCheck, WayPastTheReelIsAnErrorAndOverItAnInformation) {
 TEST(MissionCheck, RepeatedWaypointIsAWarning) {
   const std::vector<MissionFinding> findings = checkMission(missionOf({{0, 1, 1}, {0, 1, 1}}), {});
   ASSERT_EQ(findings.size(), 1U);
-  EXPECT_EQ(findings[0].severity, Severity::kWarning);
+  EXPECT_EQ(findings[0].severity, FindingSeverity::kWarning);
   EXPECT_EQ(findings[0].row, "waypoints[1]");
   EXPECT_TRUE(isFlyable(findings));
 }

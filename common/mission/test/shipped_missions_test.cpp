@@ -111,7 +111,7 @@ TEST_P(Shipped, IsCanonicalAndFlyableWithoutWarnings) {
   EXPECT_EQ(canonicalText(m), readTextFile(kConfig / "missions" / (GetParam() + ".mission.toml")));
   const Scene scene = sceneOf(m);
   for (const MissionFinding& finding : checkMission(m, {}, &scene)) {
-    EXPECT_EQ(finding.severity, Severity::kInfo) << finding.row << ": " << finding.text;
+    EXPECT_EQ(finding.severity, FindingSeverity::kInfo) << finding.row << ": " << finding.text;
   }
 }
 
