@@ -13,7 +13,9 @@ namespace tautline {
 
 /// The error of a program that cannot go on without LCM.
 [[nodiscard]] inline InputError cannotJoin(const std::string& url) {
-  return InputError({.key = "LCM " + url, .problem = "cannot be joined", .remedy = kMulticastRemedy}, ExitCode::kTimeout);
+  return InputError(
+      {.key = "LCM " + url, .problem = "cannot be joined", .remedy = kMulticastRemedy},
+      ExitCode::kTimeout);
 }
 
 /// `url` itself. @throws InputError where there is no multicast route for it.

@@ -12,10 +12,11 @@ namespace tautline {
   return std::chrono::time_point_cast<Duration>(std::chrono::steady_clock::now());
 }
 
-/// What to add to a monotonic time to get Unix time, as of this call. Taken once at start, so that a wall clock that is set
-/// during a flight never makes `utime` jump.
+/// What to add to a monotonic time to get Unix time, as of this call. Taken once at start, so that
+/// a wall clock that is set during a flight never makes `utime` jump.
 [[nodiscard]] inline Duration unixOffset() noexcept {
-  const auto unix_now = std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
+  const auto unix_now =
+      std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
   return unix_now - monotonicNow().time_since_epoch();
 }
 

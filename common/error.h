@@ -2,9 +2,11 @@
 
 /// @file
 /// The three tiers of errors (docs/architecture.md, "Errors"):
-///  1. InputError: what a user gave us is wrong. Thrown at load time only, printed in one line by reportAndExitCode().
+///  1. InputError: what a user gave us is wrong. Thrown at load time only, printed in one line by
+///  reportAndExitCode().
 ///  2. TAUTLINE_CHECK: our own mistake, always on, aborts with file, line and condition.
-///  3. Status in the returned struct: everything that can happen inside a cycle; nothing there throws.
+///  3. Status in the returned struct: everything that can happen inside a cycle; nothing there
+///  throws.
 
 #include <stdexcept>
 #include <string>

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// What estimation tells control, supervision and telemetry: where the drone is and how far that can be trusted.
+/// What estimation tells control, supervision and telemetry: where the drone is and how far that
+/// can be trusted.
 
 #include <array>
 #include <cstdint>
@@ -16,17 +17,20 @@ namespace tautline {
 /// The active anchor A: the reel outlet, or the last contact point of the contact stack.
 struct Anchor {
   Eigen::Vector3d p_WA{Eigen::Vector3d::Zero()};  ///< [m] in W.
-  double L_static{0.0};                           ///< Tether along the contacts, reel to A [m], >= 0.
-  int contact_count{0};                           ///< 0 = the reel outlet itself.
+  double L_static{0.0};  ///< Tether along the contacts, reel to A [m], >= 0.
+  int contact_count{0};  ///< 0 = the reel outlet itself.
 };
 
 enum class EstimateHealth : std::uint8_t {
   kOk,
-  kDegraded,  ///< Usable, with less than the full model: nominal tension, straight line, or samples getting old.
+  kDegraded,  ///< Usable, with less than the full model: nominal tension, straight line, or samples
+              ///< getting old.
   kLost,      ///< Do not act on it.
 };
 inline constexpr std::array<EnumName<EstimateHealth>, 3> kEstimateHealthNames{
-    {{EstimateHealth::kOk, "ok"}, {EstimateHealth::kDegraded, "degraded"}, {EstimateHealth::kLost, "lost"}}};
+    {{EstimateHealth::kOk, "ok"},
+     {EstimateHealth::kDegraded, "degraded"},
+     {EstimateHealth::kLost, "lost"}}};
 
 /// Output of the localizer for one cycle.
 struct Estimate {
@@ -35,7 +39,7 @@ struct Estimate {
   Eigen::Vector3d p_WD{Eigen::Vector3d::Zero()};            ///< Drone in W [m].
   Eigen::Vector3d v_WD{Eigen::Vector3d::Zero()};            ///< [m/s]
   Eigen::Matrix3d P_position{Eigen::Matrix3d::Identity()};  ///< Covariance of p_WD [m^2].
-  double L_free{0.0};        ///< Free tether arc length A to D, scale-corrected [m].
+  double L_free{0.0};         ///< Free tether arc length A to D, scale-corrected [m].
   double theta_tangent{0.0};  ///< Tangent elevation at D, bias-corrected [rad].
   double phi{0.0};            ///< Azimuth of D about A, zero-corrected [rad], in (-pi, pi].
   double T{0.0};              ///< Tether tension at D [N].
@@ -44,7 +48,8 @@ struct Estimate {
   double sigma_reel_scale{0.0};
   double elevation_bias{0.0};  ///< Sensed minus true tangent elevation [rad].
   double azimuth_zero{0.0};    ///< Sensed minus true azimuth [rad].
-  double nis{0.0};             ///< Normalized innovation squared of the last update, low-passed; about 1 per degree of freedom.
+  double nis{0.0};  ///< Normalized innovation squared of the last update, low-passed; about 1 per
+                    ///< degree of freedom.
 };
 
 }  // namespace tautline

@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file
-/// One list of fields for each config struct. A struct names its fields once, in `fields()`; reading a TOML file strictly,
-/// writing the effective config and listing the help all walk that one list:
+/// One list of fields for each config struct. A struct names its fields once, in `fields()`;
+/// reading a TOML file strictly, writing the effective config and listing the help all walk that
+/// one list:
 ///
 ///     struct Config {
 ///       double loop_rate_hz{100.0};

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Time inside Tautline: monotonic, nanoseconds, strongly typed. Bare numbers never stand for a time; seconds as `double`
-/// exist only inside formulas, through toSeconds().
+/// Time inside Tautline: monotonic, nanoseconds, strongly typed. Bare numbers never stand for a
+/// time; seconds as `double` exist only inside formulas, through toSeconds().
 
 #include <chrono>
 #include <cstdint>
@@ -19,7 +19,8 @@ using Time = std::chrono::time_point<std::chrono::steady_clock, Duration>;
   return std::chrono::duration<double>(d).count();
 }
 
-/// Nearest nanosecond to `seconds`, |seconds| < 2^53 ns. Real-time safe: no allocation, no locks, no exceptions.
+/// Nearest nanosecond to `seconds`, |seconds| < 2^53 ns. Real-time safe: no allocation, no locks,
+/// no exceptions.
 [[nodiscard]] constexpr Duration fromSeconds(double seconds) noexcept {
   return Duration(static_cast<std::int64_t>(seconds * 1e9 + (seconds < 0.0 ? -0.5 : 0.5)));
 }

@@ -1,11 +1,12 @@
 #pragma once
 
 /// @file
-/// The seam between the station's core and its devices: what sensors say (SensorFrame) and what the station commands
-/// (VehicleCommand). Plain data: drivers fill and read it, estimation and control see nothing else of the hardware.
+/// The seam between the station's core and its devices: what sensors say (SensorFrame) and what the
+/// station commands (VehicleCommand). Plain data: drivers fill and read it, estimation and control
+/// see nothing else of the hardware.
 ///
-/// Frames and symbols: docs/notation.md. SI units, radians. Every sample carries time, sequence and validity;
-/// "no new data" is a normal state: the sample keeps its old sequence number.
+/// Frames and symbols: docs/notation.md. SI units, radians. Every sample carries time, sequence and
+/// validity; "no new data" is a normal state: the sample keeps its old sequence number.
 
 #include <array>
 #include <cstdint>
@@ -26,7 +27,8 @@ inline constexpr std::array<EnumName<RunMode>, 3> kRunModeNames{
 
 template <class T>
 struct Sample {
-  Time time{};                ///< When it was measured, or (no time stamp in the protocol) when its last byte arrived.
+  Time time{};  ///< When it was measured, or (no time stamp in the protocol) when its last byte
+                ///< arrived.
   std::uint32_t sequence{0};  ///< Grows by one with each new sample; 0 = none yet.
   bool valid{false};          ///< False: never received, or the last one was out of range.
   T value{};
@@ -34,12 +36,14 @@ struct Sample {
 
 /// Tether reel. `length` is total tether out, reel to drone, by the driver's nominal calibration.
 struct ReelReading {
-  double counts{0.0};             ///< Raw encoder counts since the reel's power-on.
-  double length{0.0};             ///< L_total_meas [m], >= 0, nominal scale and offset applied.
-  std::optional<double> tension;  ///< Motor tension at the reel [N], where the reel has that sensor.
+  double counts{0.0};  ///< Raw encoder counts since the reel's power-on.
+  double length{0.0};  ///< L_total_meas [m], >= 0, nominal scale and offset applied.
+  std::optional<double>
+      tension;  ///< Motor tension at the reel [N], where the reel has that sensor.
 };
 
-/// Tether angles sensed at the drone: the tangent of the tether at D, so relative to the active anchor A, with sag.
+/// Tether angles sensed at the drone: the tangent of the tether at D, so relative to the active
+/// anchor A, with sag.
 struct TetherAngles {
   double theta{0.0};               ///< Tangent elevation at D [rad], in [-pi/2, pi/2], up positive.
   double phi{0.0};                 ///< Azimuth [rad], about +y from z towards x, any branch.
@@ -47,7 +51,8 @@ struct TetherAngles {
 };
 
 struct AttitudeReading {
-  Eigen::Quaterniond R_WB{Eigen::Quaterniond::Identity()};  ///< Body B to world W; level = identity up to yaw. Unit norm.
+  Eigen::Quaterniond R_WB{Eigen::Quaterniond::Identity()};  ///< Body B to world W; level = identity
+                                                            ///< up to yaw. Unit norm.
 };
 
 struct GimbalReading {
@@ -56,12 +61,13 @@ struct GimbalReading {
 
 /// What the vehicle says it is doing, in terms that every device can map to.
 enum class VehiclePhase : std::uint8_t { kUnknown, kIdle, kFlying, kLanding, kStopped, kFault };
-inline constexpr std::array<EnumName<VehiclePhase>, 6> kVehiclePhaseNames{{{VehiclePhase::kUnknown, "unknown"},
-                                                                          {VehiclePhase::kIdle, "idle"},
-                                                                          {VehiclePhase::kFlying, "flying"},
-                                                                          {VehiclePhase::kLanding, "landing"},
-                                                                          {VehiclePhase::kStopped, "stopped"},
-                                                                          {VehiclePhase::kFault, "fault"}}};
+inline constexpr std::array<EnumName<VehiclePhase>, 6> kVehiclePhaseNames{
+    {{VehiclePhase::kUnknown, "unknown"},
+     {VehiclePhase::kIdle, "idle"},
+     {VehiclePhase::kFlying, "flying"},
+     {VehiclePhase::kLanding, "landing"},
+     {VehiclePhase::kStopped, "stopped"},
+     {VehiclePhase::kFault, "fault"}}};
 
 struct VehicleReading {
   VehiclePhase phase{VehiclePhase::kUnknown};
@@ -99,11 +105,13 @@ struct SensorFrame {
 
 enum class VehicleAction : std::uint8_t {
   kNone,
-  kTakeoff,    ///< Start motors and lift off; repeated by the supervisor until the vehicle says it flies.
+  kTakeoff,    ///< Start motors and lift off; repeated by the supervisor until the vehicle says it
+               ///< flies.
   kMotorStop,  ///< Motors off at once.
 };
 
-/// What the station commands in one cycle. Rates are of the vehicle's own set-points, relative to the active anchor.
+/// What the station commands in one cycle. Rates are of the vehicle's own set-points, relative to
+/// the active anchor.
 struct VehicleCommand {
   bool engaged{false};            ///< False: nothing but zero rates may reach the device.
   double length_rate{0.0};        ///< dL/dt [m/s], pay-out positive.
@@ -111,7 +119,8 @@ struct VehicleCommand {
   double azimuth_rate{0.0};       ///< d(phi)/dt [rad/s].
   double yaw_rate{0.0};           ///< About +y [rad/s].
   double gimbal_pitch_rate{0.0};  ///< Up positive [rad/s].
-  bool reel_controller{false};    ///< Vehicle's own tether-length controller (off for take-off and landing).
+  bool reel_controller{
+      false};  ///< Vehicle's own tether-length controller (off for take-off and landing).
   VehicleAction action{VehicleAction::kNone};
 };
 

@@ -21,45 +21,30 @@ constexpr ConditionSet kNotReady{C::kReelStale,    C::kAnglesStale,   C::kAttitu
                                  C::kVehicleStale, C::kLinkLost,      C::kLocalizationLost,
                                  C::kVehicleFault, C::kVehicleFlying, C::kOverruns};
 
+// clang-format off
 constexpr std::array kTransitions{
     // The operator's stop comes before everything else.
     Transition{kEverywhere, R::kStop, {}, {}, {}, M::kEstop},
     // By themselves, most severe first.
     Transition{kAirborne, R::kNone, {C::kTouchdown}, {}, {C::kVehicleFlying}, M::kStandby},
-    Transition{in({M::kTakeoff, M::kHold, M::kAuto}),
-               R::kNone,
-               {C::kLinkLost, C::kVehicleStale, C::kVehicleFault},
-               {},
-               {},
-               M::kLand},
+    Transition{in({M::kTakeoff, M::kHold, M::kAuto}), R::kNone, {C::kLinkLost, C::kVehicleStale, C::kVehicleFault}, {}, {}, M::kLand},
     Transition{in({M::kTakeoff}), R::kNone, {C::kTimeInMode}, {}, {}, M::kLand},
-    Transition{in({M::kAuto}),
-               R::kNone,
-               kBlind | ConditionSet{C::kMissionFailed, C::kOverruns},
-               {},
-               {},
-               M::kHold},
+    Transition{in({M::kAuto}), R::kNone, kBlind | ConditionSet{C::kMissionFailed, C::kOverruns}, {}, {}, M::kHold},
     Transition{in({M::kAuto}), R::kNone, {C::kMissionDone}, {}, {}, M::kHold},
     Transition{in({M::kTakeoff}), R::kNone, {C::kAtTarget}, {C::kVehicleFlying}, {}, M::kHold},
-    Transition{
-        in({M::kArmed}), R::kNone, kNotReady | ConditionSet{C::kTimeInMode}, {}, {}, M::kStandby},
+    Transition{in({M::kArmed}), R::kNone, kNotReady | ConditionSet{C::kTimeInMode}, {}, {}, M::kStandby},
     // On request.
     Transition{in({M::kStandby}), R::kArm, {}, {}, kNotReady, M::kArmed},
     Transition{in({M::kArmed, M::kEstop}), R::kDisarm, {}, {}, {C::kVehicleFlying}, M::kStandby},
     Transition{in({M::kArmed}), R::kTakeoff, {}, {}, kNotReady, M::kTakeoff},
-    Transition{in({M::kHold}),
-               R::kNavigate,
-               {},
-               {C::kMissionLoaded, C::kVehicleFlying},
-               kBlind | ConditionSet{C::kOverruns},
-               M::kAuto},
-    Transition{
-        in({M::kTakeoff, M::kAuto, M::kLand}), R::kHold, {}, {C::kVehicleFlying}, {}, M::kHold},
+    Transition{in({M::kHold}), R::kNavigate, {}, {C::kMissionLoaded, C::kVehicleFlying}, kBlind | ConditionSet{C::kOverruns}, M::kAuto},
+    Transition{in({M::kTakeoff, M::kAuto, M::kLand}), R::kHold, {}, {C::kVehicleFlying}, {}, M::kHold},
     Transition{in({M::kTakeoff, M::kHold, M::kAuto}), R::kLand, {}, {}, {}, M::kLand},
     // A station that was restarted in flight takes the vehicle back, disarmed until asked.
     Transition{in({M::kStandby}), R::kHold, {}, {C::kVehicleFlying}, kBlind, M::kHold},
     Transition{in({M::kStandby}), R::kLand, {}, {C::kVehicleFlying}, kBlind, M::kLand},
 };
+// clang-format on
 
 bool applies(const Transition& row, Mode mode, ConditionSet conditions) noexcept {
   if ((row.from & (1U << static_cast<unsigned>(mode))) == 0) return false;

@@ -13,7 +13,7 @@ constexpr double kGravity = 9.81;
 constexpr int kStepsPerAirUpdate = 10;
 constexpr double kDefaultFoot = 0.1;   // [m]
 constexpr double kSameContact = 0.05;  // contacts nearer than this on one obstacle are one [m]
-constexpr double kOnGround = 0.01;     // attachment this near its parking height stands [m]
+constexpr double kOnGround = 0.02;     // attachment this near its parking height stands [m]
 
 /// Height of the attachment over the ground when parked, from the scene's start.
 double footOf(const Obstacles& obstacles, const Eigen::Vector3d& start) {

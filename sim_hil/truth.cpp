@@ -20,6 +20,8 @@ void fillTruth(const Truth& truth, std::int64_t utime, tautline::sim_truth_t& me
   message.tangent_azimuth_rad = truth.tangent_azimuth;
   message.on_ground = truth.on_ground ? 1 : 0;
   message.motors_on = truth.motors_on ? 1 : 0;
+  message.crashed = truth.crashed ? 1 : 0;
+  message.crash_reason = static_cast<std::int8_t>(truth.crash_reason);
   message.contact_count = static_cast<std::int16_t>(truth.contact_count);
 }
 

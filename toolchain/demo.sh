@@ -89,7 +89,7 @@ stop TERM "$sim"
 pids=()
 
 verdict=0
-tautline report "$out/flight.lcm" --out "$out" --require-success || verdict=1
+tautline report "$out/flight.lcm" --out "$out" --scene "$scene" --require-success || verdict=1
 $flown || verdict=1
 say "report $out/report.html"
 echo "pictures  $out/*.svg"

@@ -21,7 +21,9 @@ constexpr std::int64_t kSession = 1;  // the only operator there is
 
 StationConfig forBench(const LockstepConfig& config) {
   if (!config.world.start) {
-    throw InputError({.key = "start_m", .problem = "the scene has none", .remedy = "say where the drone is parked"});
+    throw InputError({.key = "start_m",
+                      .problem = "the scene has none",
+                      .remedy = "say where the drone is parked"});
   }
   StationConfig station = config.station;
   station.run_mode = RunMode::kSim;
@@ -39,12 +41,14 @@ Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
       station_(forBench(config).core),
       sink_(sink) {
   if (sink_ == nullptr) return;
-  telemetry_ = std::make_unique<Telemetry>(*sink_, RunMode::kSim, Duration::zero(), fromSeconds(1.0 / config.station.telemetry_rate_hz));
+  telemetry_ = std::make_unique<Telemetry>(*sink_, RunMode::kSim, Duration::zero(),
+                                           fromSeconds(1.0 / config.station.telemetry_rate_hz));
   telemetry_->setParams("tautline-bench", kVersion, dumpConfig(forBench(config)));
   telemetry_->publishParams(now_);
 }
 
-const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command, const tautline::mission_chunk_t* chunk) {
+const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
+                                 const tautline::mission_chunk_t* chunk) {
   now_ += period_;
   simulator_.advanceTo(now_);
   input_.now = now_;
@@ -72,7 +76,8 @@ void Lockstep::record(const char* channel, Message message) noexcept {
   std::array<std::uint8_t, 4096> buffer{};
   message.utime = toMicroseconds(now_);
   const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
-  if (size > 0) sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});
+  if (size > 0)
+    sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});
 }
 
 /// What lcm-logger would have heard of the operator.
@@ -100,12 +105,15 @@ FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration li
   FlightResult result;
   const Time end = bench.now() + limit;
   std::int32_t sequence = 0;
-  const auto cycle = [&](const std::optional<OperatorCommand>& command = {}, const tautline::mission_chunk_t* chunk = nullptr) {
+  const auto cycle = [&](const std::optional<OperatorCommand>& command = {},
+                         const tautline::mission_chunk_t* chunk = nullptr) {
     const StepOutput& out = bench.step(command, chunk);
     if (each_cycle) each_cycle(bench);
     return out.ack && out.ack->result == AckResult::kAccepted;
   };
-  const auto ask = [&](Request request) { return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash}); };
+  const auto ask = [&](Request request) {
+    return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash});
+  };
   const auto over = [&] { return bench.now() >= end || bench.truth().crashed; };
   const auto flyUntil = [&](Mode mode) {
     while (!over() && bench.output().supervision.mode != mode) cycle();
@@ -130,9 +138,10 @@ FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration li
   if (!over() && bench.output().supervision.mode != Mode::kStandby) {
     ask(Request::kLand);
     flyUntil(Mode::kStandby);
-    for (const Time settled = bench.now() + kSettle; bench.now() < settled;) cycle();  // the last centimetres, rotors off
-    result.landed = bench.output().supervision.mode == Mode::kStandby && bench.truth().on_ground && !bench.truth().motors_on &&
-                    !bench.truth().crashed;
+    for (const Time settled = bench.now() + kSettle; bench.now() < settled;)
+      cycle();  // the last centimetres, rotors off
+    result.landed = bench.output().supervision.mode == Mode::kStandby && bench.truth().on_ground &&
+                    !bench.truth().motors_on && !bench.truth().crashed;
   }
   result.crash = bench.truth().crash_reason;
   result.duration = bench.now() - Time{};

@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file
-/// The station's core, its real driver and the simulated machine in one process on one virtual clock: the lock-step rung of
-/// the bench. Faster than real time; the same seed gives the same log, byte for byte.
+/// The station's core, its real driver and the simulated machine in one process on one virtual
+/// clock: the lock-step rung of the bench. Faster than real time; the same seed gives the same log,
+/// byte for byte.
 
 #include <cstdint>
 #include <functional>
@@ -27,14 +28,17 @@ struct LockstepConfig {
   std::uint64_t seed{1};
 };
 
-/// One flight. The bench is the operator: it arms, takes off, navigates and lands as the command line would.
+/// One flight. The bench is the operator: it arms, takes off, navigates and lands as the command
+/// line would.
 class Lockstep {
  public:
-  /// `sink` gets every message of station and simulator, and outlives the bench; null: none. Throws InputError.
+  /// `sink` gets every message of station and simulator, and outlives the bench; null: none. Throws
+  /// InputError.
   Lockstep(const LockstepConfig& config, TelemetrySink* sink);
 
   /// One cycle, with an operator's command or a piece of a mission if there is one.
-  const StepOutput& step(const std::optional<OperatorCommand>& command = {}, const tautline::mission_chunk_t* chunk = nullptr);
+  const StepOutput& step(const std::optional<OperatorCommand>& command = {},
+                         const tautline::mission_chunk_t* chunk = nullptr);
 
   [[nodiscard]] Time now() const noexcept { return now_; }
   [[nodiscard]] const StepOutput& output() const noexcept { return *output_; }
@@ -73,8 +77,8 @@ struct FlightResult {
   Duration duration{};  ///< Virtual time from start to end.
 };
 
-/// Arms, takes off, flies `mission` and lands; gives up at `limit` of virtual time. `each_cycle` (may be empty) is called after
-/// every cycle.
+/// Arms, takes off, flies `mission` and lands; gives up at `limit` of virtual time. `each_cycle`
+/// (may be empty) is called after every cycle.
 FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration limit,
                         const std::function<void(const Lockstep&)>& each_cycle = {});
 

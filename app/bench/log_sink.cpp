@@ -9,13 +9,16 @@ namespace tautline::bench {
 
 LogSink::LogSink(const std::filesystem::path& path) : log_(lcm_eventlog_create(path.c_str(), "w")) {
   if (log_ == nullptr) {
-    throw InputError({.file = path.string(), .problem = "cannot be written", .remedy = "choose a folder that exists and is yours"});
+    throw InputError({.file = path.string(),
+                      .problem = "cannot be written",
+                      .remedy = "choose a folder that exists and is yours"});
   }
 }
 
 LogSink::~LogSink() { lcm_eventlog_destroy(log_); }
 
-bool LogSink::publish(const char* channel, std::int64_t utime, std::span<const std::uint8_t> bytes) noexcept {
+bool LogSink::publish(const char* channel, std::int64_t utime,
+                      std::span<const std::uint8_t> bytes) noexcept {
   std::array<char, 64> name{};
   std::array<std::uint8_t, 65536> data{};
   const std::size_t length = std::strlen(channel);

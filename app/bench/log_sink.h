@@ -17,7 +17,8 @@ class LogSink final : public TelemetrySink {
   explicit LogSink(const std::filesystem::path& path);
   ~LogSink() override;
 
-  bool publish(const char* channel, std::int64_t utime, std::span<const std::uint8_t> bytes) noexcept override;
+  bool publish(const char* channel, std::int64_t utime,
+               std::span<const std::uint8_t> bytes) noexcept override;
 
  private:
   lcm_eventlog_t* log_{nullptr};

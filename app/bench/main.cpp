@@ -50,10 +50,11 @@ ExitCode fly(const Options& o) {
   double error_sum = 0.0;
   std::int64_t cycles = 0;
   const Time began = monotonicNow();
-  const bench::FlightResult r = bench::flyMission(flight, *mission.plan, fromSeconds(o.limit_s), [&](const bench::Lockstep& b) {
-    error_sum += (b.output().estimate.p_WD - b.truth().p_WD).norm();
-    ++cycles;
-  });
+  const bench::FlightResult r = bench::flyMission(
+      flight, *mission.plan, fromSeconds(o.limit_s), [&](const bench::Lockstep& b) {
+        error_sum += (b.output().estimate.p_WD - b.truth().p_WD).norm();
+        ++cycles;
+      });
   const double wall_s = toSeconds(monotonicNow() - began);
   const double flight_s = toSeconds(r.duration);
   const double localization_mean = cycles > 0 ? error_sum / static_cast<double>(cycles) : 0.0;
@@ -72,10 +73,13 @@ ExitCode fly(const Options& o) {
                                       {"times_real_time", flight_s / wall_s}}
                            .dump());
   } else {
-    fmt::print("{} seed {}: {}, {}, {:.1f} s flight, localization error {:.3f} m mean, {:.0f} times real time{}{}\n", mission.name,
-               o.seed, r.completed ? "completed" : "NOT completed", r.landed ? "landed" : "NOT landed", flight_s, localization_mean,
-               flight_s / wall_s, r.crash == sim::CrashReason::kNone ? "" : ", crash: ",
-               r.crash == sim::CrashReason::kNone ? "" : crash);
+    fmt::print(
+        "{} seed {}: {}, {}, {:.1f} s flight, localization error {:.3f} m mean, {:.0f} times real "
+        "time{}{}\n",
+        mission.name, o.seed, r.completed ? "completed" : "NOT completed",
+        r.landed ? "landed" : "NOT landed", flight_s, localization_mean, flight_s / wall_s,
+        r.crash == sim::CrashReason::kNone ? "" : ", crash: ",
+        r.crash == sim::CrashReason::kNone ? "" : crash);
   }
   return success ? ExitCode::kOk : ExitCode::kFailed;
 }
@@ -90,30 +94,34 @@ ExitCode replayLog(const Options& o) {
                                       {"first_difference", r.first_difference}}
                            .dump());
   } else {
-    fmt::print("{} cycles replayed, {} commands compared, {} differ{}{}\n", r.cycles, r.commands_compared, r.differences,
-               same ? "" : ": first ", r.first_difference);
+    fmt::print("{} cycles replayed, {} commands compared, {} differ{}{}\n", r.cycles,
+               r.commands_compared, r.differences, same ? "" : ": first ", r.first_difference);
   }
   return same ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 void addFly(CLI::App& app, Options& options, ExitCode& result) {
-  CLI::App* verb = app.add_subcommand("fly", "Fly one mission; exit code 0 only if it was completed and the drone landed");
+  CLI::App* verb = app.add_subcommand(
+      "fly", "Fly one mission; exit code 0 only if it was completed and the drone landed");
   verb->add_option("--mission", options.mission, "mission file")->required();
   verb->add_option("--scene", options.scene, "scene file")->required();
   verb->add_option("--seed", options.seed, "of gusts and sensor noise")->capture_default_str();
   verb->add_option("--station-config", options.station_config, "station's TOML file");
   verb->add_option("--sim-config", options.sim_config, "simulator's TOML file");
   verb->add_option("--log", options.log, "write an LCM log for `tautline report`");
-  verb->add_option("--limit", options.limit_s, "give up after this much flight time [s]")->capture_default_str();
+  verb->add_option("--limit", options.limit_s, "give up after this much flight time [s]")
+      ->capture_default_str();
   verb->add_flag("--json", options.json, "one JSON object instead of words");
   verb->footer(
-      "Example: tautline-bench fly --mission config/missions/square.mission.toml --scene config/scenes/open.scene.toml --log "
+      "Example: tautline-bench fly --mission config/missions/square.mission.toml --scene "
+      "config/scenes/open.scene.toml --log "
       "flight.lcm");
   verb->callback([&] { result = fly(options); });
 }
 
 void addReplay(CLI::App& app, Options& options, ExitCode& result) {
-  CLI::App* verb = app.add_subcommand("replay", "Step a recorded flight again; exit code 0 only if every command is the same");
+  CLI::App* verb = app.add_subcommand(
+      "replay", "Step a recorded flight again; exit code 0 only if every command is the same");
   verb->add_option("log", options.log, "LCM log")->required();
   verb->add_flag("--json", options.json, "one JSON object instead of words");
   verb->footer("Example: tautline-bench replay flight.lcm");
@@ -123,7 +131,9 @@ void addReplay(CLI::App& app, Options& options, ExitCode& result) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Tautline's lock-step bench: station core and simulated machine on one virtual clock", "tautline-bench"};
+  CLI::App app{
+      "Tautline's lock-step bench: station core and simulated machine on one virtual clock",
+      "tautline-bench"};
   app.require_subcommand(1);
   app.set_version_flag("--version", kVersion);
   Options options;

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// The cable between driver and simulated device in lock-step: bytes in memory, no time passes in them.
+/// The cable between driver and simulated device in lock-step: bytes in memory, no time passes in
+/// them.
 
 #include "drivers/byte_port.h"
 #include "sim_hil/simulator.h"

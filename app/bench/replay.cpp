@@ -30,18 +30,22 @@ void fill(Sample<T>& sample, std::int64_t time_ns, std::int32_t sequence, bool v
   sample.valid = valid;
 }
 
-std::optional<double> optional(bool has, double value) noexcept { return has ? std::optional(value) : std::nullopt; }
+std::optional<double> optional(bool has, double value) noexcept {
+  return has ? std::optional(value) : std::nullopt;
+}
 
 /// A COMMAND without its hash and utime: what was commanded.
 std::vector<std::uint8_t> payloadOf(std::span<const std::uint8_t> bytes) {
   constexpr std::size_t kHeader = 16;
-  return bytes.size() < kHeader ? std::vector<std::uint8_t>{} : std::vector<std::uint8_t>(bytes.begin() + kHeader, bytes.end());
+  return bytes.size() < kHeader ? std::vector<std::uint8_t>{}
+                                : std::vector<std::uint8_t>(bytes.begin() + kHeader, bytes.end());
 }
 
 /// Keeps the COMMAND that a Telemetry encodes last.
 class CommandCatcher final : public TelemetrySink {
  public:
-  bool publish(const char* channel, std::int64_t /*utime*/, std::span<const std::uint8_t> bytes) noexcept override {
+  bool publish(const char* channel, std::int64_t /*utime*/,
+               std::span<const std::uint8_t> bytes) noexcept override {
     if (std::strcmp(channel, channel::kCommand) == 0) last_ = payloadOf(bytes);
     return true;
   }
@@ -63,11 +67,14 @@ struct Contents {
 
 Contents readLog(const std::filesystem::path& path) {
   lcm::LogFile log(path.string(), "r");
-  if (!log.good()) throw InputError({.file = path.string(), .problem = "cannot be read as an LCM log"});
+  if (!log.good())
+    throw InputError({.file = path.string(), .problem = "cannot be read as an LCM log"});
   Contents out;
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     const auto* data = static_cast<const std::uint8_t*>(event->data);
-    const auto decode = [&](auto& message) { return message.decode(event->data, 0, event->datalen) >= 0; };
+    const auto decode = [&](auto& message) {
+      return message.decode(event->data, 0, event->datalen) >= 0;
+    };
     tautline::params_t params;
     tautline::mission_chunk_t chunk;
     tautline::station_input_t input;
@@ -79,7 +86,8 @@ Contents readLog(const std::filesystem::path& path) {
       out.inputs.push_back(input);
     } else if (event->channel == channel::kCommand) {
       tautline::command_t command;
-      if (decode(command)) out.commands[command.utime] = payloadOf({data, static_cast<std::size_t>(event->datalen)});
+      if (decode(command))
+        out.commands[command.utime] = payloadOf({data, static_cast<std::size_t>(event->datalen)});
     }
   }
   if (!out.config || out.inputs.empty()) {
@@ -97,8 +105,9 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
   in.now = timeOf(m.now_ns);
   in.consecutive_overruns = m.loop_overruns;
   if (m.has_command) {
-    in.command = OperatorCommand{m.command_session, m.command_sequence, static_cast<Request>(m.command_verb),
-                                 static_cast<std::uint64_t>(m.command_mission_hash)};
+    in.command =
+        OperatorCommand{m.command_session, m.command_sequence, static_cast<Request>(m.command_verb),
+                        static_cast<std::uint64_t>(m.command_mission_hash)};
   }
   SensorFrame& f = in.sensors;
   fill(f.reel, m.reel_time_ns, m.reel_sequence, m.reel_valid);
@@ -111,7 +120,8 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
   fill(f.gimbal, m.gimbal_time_ns, m.gimbal_sequence, m.gimbal_valid);
   f.gimbal.value.pitch = m.gimbal_pitch_rad;
   fill(f.vehicle, m.vehicle_time_ns, m.vehicle_sequence, m.vehicle_valid);
-  f.vehicle.value = {static_cast<VehiclePhase>(m.vehicle_phase), static_cast<std::uint8_t>(m.flight_mode),
+  f.vehicle.value = {static_cast<VehiclePhase>(m.vehicle_phase),
+                     static_cast<std::uint8_t>(m.flight_mode),
                      static_cast<std::uint16_t>(m.vehicle_flags), m.backup_battery_v};
   fill(f.ground, m.ground_time_ns, m.ground_sequence, m.ground_valid);
   f.ground.value = {static_cast<std::uint8_t>(m.ground_mode), m.ground_battery_v};
@@ -137,7 +147,8 @@ ReplayResult replay(const std::filesystem::path& path) {
     StepInput in = inputOf(message);
     if (message.chunk_sequence != 0) {
       const auto chunk = log.chunks.find({message.chunk_session, message.chunk_sequence});
-      if (chunk == log.chunks.end()) throw InputError({.file = path.string(), .problem = "a MISSION_CHUNK is missing"});
+      if (chunk == log.chunks.end())
+        throw InputError({.file = path.string(), .problem = "a MISSION_CHUNK is missing"});
       in.chunk = &chunk->second;
     }
     telemetry.publish(in, station->step(in));
@@ -146,7 +157,8 @@ ReplayResult replay(const std::filesystem::path& path) {
     if (recorded == log.commands.end()) continue;
     ++result.commands_compared;
     if (catcher.last() == recorded->second) continue;
-    if (result.differences++ == 0) result.first_difference = "COMMAND at utime " + std::to_string(message.utime);
+    if (result.differences++ == 0)
+      result.first_difference = "COMMAND at utime " + std::to_string(message.utime);
   }
   return result;
 }

@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file
-/// A recorded flight stepped again: the inputs of a log through a new core, its commands compared with the recorded ones.
-/// The same bytes in give the same commands out; a difference is a change of behaviour.
+/// A recorded flight stepped again: the inputs of a log through a new core, its commands compared
+/// with the recorded ones. The same bytes in give the same commands out; a difference is a change
+/// of behaviour.
 
 #include <cstdint>
 #include <filesystem>
@@ -24,7 +25,8 @@ struct ReplayResult {
   std::string first_difference;  ///< Empty if there is none.
 };
 
-/// Replays `log` with the configuration that is in it. @throws InputError for a log that cannot be replayed.
+/// Replays `log` with the configuration that is in it. @throws InputError for a log that cannot be
+/// replayed.
 [[nodiscard]] ReplayResult replay(const std::filesystem::path& log);
 
 }  // namespace tautline::bench

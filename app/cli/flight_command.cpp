@@ -13,6 +13,7 @@
 
 #include "app/cli/station_client.h"
 #include "common/estimate.h"
+#include "common/mission/mission_check.h"
 #include "common/mission/mission_file.h"
 #include "common/vehicle.h"
 #include "control/motion_executor.h"
@@ -34,13 +35,21 @@ struct Options {
 };
 
 Mode modeOf(const tautline::station_state_t& state) { return static_cast<Mode>(state.mode); }
-const char* modeName(const tautline::station_state_t& state) { return nameOf(modeOf(state), kModeNames); }
-ConditionSet bitsOf(std::int32_t bits) { return ConditionSet::fromBits(static_cast<std::uint32_t>(bits)); }
+const char* modeName(const tautline::station_state_t& state) {
+  return nameOf(modeOf(state), kModeNames);
+}
+ConditionSet bitsOf(std::int32_t bits) {
+  return ConditionSet::fromBits(static_cast<std::uint32_t>(bits));
+}
 
 /// Prints one line: words for people, or one JSON object.
-void say(const Options& options, const char* verb, ExitCode code, const std::string& text, nlohmann::json extra = {}) {
+void say(const Options& options, const char* verb, ExitCode code, const std::string& text,
+         nlohmann::json extra = {}) {
   if (options.json) {
-    nlohmann::json out{{"verb", verb}, {"ok", code == ExitCode::kOk}, {"exit_code", static_cast<int>(code)}, {"text", text}};
+    nlohmann::json out{{"verb", verb},
+                       {"ok", code == ExitCode::kOk},
+                       {"exit_code", static_cast<int>(code)},
+                       {"text", text}};
     if (extra.is_object()) out.update(extra);
     fmt::print("{}\n", out.dump());
   } else if (code == ExitCode::kOk) {
@@ -58,7 +67,8 @@ ExitCode finish(const Options& options, const char* verb, ExitCode code, const s
 void printEvents(StationClient& client, const Options& options) {
   if (options.json || options.quiet) return;
   client.onEvent([](const tautline::event_t& e) {
-    fmt::print("  {}{}{}{}{}\n", e.text, e.reaction.empty() ? "" : " -> ", e.reaction, e.remedy.empty() ? "" : "; ", e.remedy);
+    fmt::print("  {}{}{}{}{}\n", e.text, e.reaction.empty() ? "" : " -> ", e.reaction,
+               e.remedy.empty() ? "" : "; ", e.remedy);
     std::fflush(stdout);
   });
 }
@@ -72,11 +82,13 @@ std::string refusalText(const tautline::command_ack_t& ack, const StationClient&
 }
 
 /// Sends the request; kOk if accepted, otherwise the exit code, after saying why.
-ExitCode ask(StationClient& client, const Options& options, const char* verb, Request request, std::uint64_t mission_hash = 0) {
+ExitCode ask(StationClient& client, const Options& options, const char* verb, Request request,
+             std::uint64_t mission_hash = 0) {
   const auto ack = client.request(request, mission_hash);
   if (!ack) {
     return finish(options, verb, ExitCode::kTimeout,
-                  "no answer from a station; is tautline-station running with --lcm-url " + options.lcm_url + "?");
+                  "no answer from a station; is tautline-station running with --lcm-url " +
+                      options.lcm_url + "?");
   }
   if (ack->result != static_cast<std::int8_t>(AckResult::kAccepted)) {
     return finish(options, verb, ExitCode::kRefused, refusalText(*ack, client));
@@ -85,15 +97,21 @@ ExitCode ask(StationClient& client, const Options& options, const char* verb, Re
 }
 
 milliseconds limitOf(const Options& options, seconds fallback) {
-  return options.timeout_s > 0.0 ? milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000.0)) : milliseconds(fallback);
+  return options.timeout_s > 0.0
+             ? milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000.0))
+             : milliseconds(fallback);
 }
 
-/// Sends the request and waits for `goal`; any other mode than those passed through on the way ends the wait.
-ExitCode goToMode(const Options& options, const char* verb, Request request, Mode goal, seconds patience) {
+/// Sends the request and waits for `goal`; any other mode than those passed through on the way ends
+/// the wait.
+ExitCode goToMode(const Options& options, const char* verb, Request request, Mode goal,
+                  seconds patience) {
   StationClient client(options.lcm_url);
   printEvents(client, options);
   if (const ExitCode code = ask(client, options, verb, request); code != ExitCode::kOk) return code;
-  const Mode passing = request == Request::kTakeoff ? Mode::kTakeoff : request == Request::kLand ? Mode::kLand : goal;
+  const Mode passing = request == Request::kTakeoff ? Mode::kTakeoff
+                       : request == Request::kLand  ? Mode::kLand
+                                                    : goal;
   bool seen = false;
   const auto settled = [&] {
     if (!client.view().state) return false;
@@ -105,9 +123,11 @@ ExitCode goToMode(const Options& options, const char* verb, Request request, Mod
     return finish(options, verb, ExitCode::kTimeout, "accepted, but not done in time");
   }
   const auto& state = *client.view().state;
-  if (modeOf(state) == goal) return finish(options, verb, ExitCode::kOk, std::string("done, mode ") + modeName(state));
+  if (modeOf(state) == goal)
+    return finish(options, verb, ExitCode::kOk, std::string("done, mode ") + modeName(state));
   return finish(options, verb, ExitCode::kFailed,
-                std::string("ended in mode ") + modeName(state) + " because of " + describe(bitsOf(state.reasons)));
+                std::string("ended in mode ") + modeName(state) + " because of " +
+                    describe(bitsOf(state.reasons)));
 }
 
 const char* failureName(const tautline::mission_status_t& status) {
@@ -116,21 +136,38 @@ const char* failureName(const tautline::mission_status_t& status) {
 
 /// One line that is rewritten in a terminal.
 void showProgress(const tautline::mission_status_t& m) {
-  fmt::print("\r  waypoint {:>3}/{:<3}  {:5.2f} m to go  cross-track {:4.2f} m ", m.waypoint + 1, m.waypoint_count, m.distance_m,
-             m.cross_track_m);
+  fmt::print("\r  waypoint {:>3}/{:<3}  {:5.2f} m to go  cross-track {:4.2f} m ", m.waypoint + 1,
+             m.waypoint_count, m.distance_m, m.cross_track_m);
   std::fflush(stdout);
+}
+
+/// @throws InputError with the first thing that makes the mission unflyable, before any of it is
+/// sent.
+void requireFlyable(const Mission& mission, const std::string& file) {
+  for (const MissionFinding& finding : checkMission(mission, MissionLimits{})) {
+    if (finding.severity != FindingSeverity::kError) continue;
+    throw InputError({.file = file,
+                      .key = finding.row,
+                      .problem = finding.text,
+                      .remedy = finding.remedy + "; all findings: tautline mission check " + file});
+  }
 }
 
 ExitCode navigate(const Options& options) {
   const Mission mission = readMission(options.mission_file);
+  requireFlyable(mission, options.mission_file);
   StationClient client(options.lcm_url);
   printEvents(client, options);
   const auto loaded = client.upload(*mission.plan);
-  if (!loaded) return finish(options, "navigate", ExitCode::kTimeout, "no answer from a station while sending the mission");
+  if (!loaded)
+    return finish(options, "navigate", ExitCode::kTimeout,
+                  "no answer from a station while sending the mission");
   if (loaded->result != static_cast<std::int8_t>(AckResult::kAccepted)) {
     return finish(options, "navigate", ExitCode::kRefused, refusalText(*loaded, client));
   }
-  if (const ExitCode code = ask(client, options, "navigate", Request::kNavigate, mission.plan->hash); code != ExitCode::kOk) {
+  if (const ExitCode code =
+          ask(client, options, "navigate", Request::kNavigate, mission.plan->hash);
+      code != ExitCode::kOk) {
     return code;
   }
   const auto hash = static_cast<std::int64_t>(mission.plan->hash);
@@ -146,16 +183,22 @@ ExitCode navigate(const Options& options) {
   };
   const bool in_time = client.waitUntil(ended, limitOf(options, seconds(3600)));
   if (live) fmt::print("\n");
-  if (!in_time) return finish(options, "navigate", ExitCode::kTimeout, "mission not ended in time; the station goes on");
+  if (!in_time)
+    return finish(options, "navigate", ExitCode::kTimeout,
+                  "mission not ended in time; the station goes on");
   const auto& status = *client.view().mission;
-  const nlohmann::json extra{{"waypoint", status.waypoint}, {"waypoint_count", status.waypoint_count}};
+  const nlohmann::json extra{{"waypoint", status.waypoint},
+                             {"waypoint_count", status.waypoint_count}};
   if (static_cast<MissionState>(status.state) == MissionState::kCompleted) {
-    say(options, "navigate", ExitCode::kOk, fmt::format("mission {} completed, {} waypoints", mission.name, status.waypoint_count), extra);
+    say(options, "navigate", ExitCode::kOk,
+        fmt::format("mission {} completed, {} waypoints", mission.name, status.waypoint_count),
+        extra);
     return ExitCode::kOk;
   }
   say(options, "navigate", ExitCode::kFailed,
-      fmt::format("mission ended at waypoint {} of {} in mode {}: {} {}", status.waypoint + 1, status.waypoint_count,
-                  modeName(*client.view().state), failureName(status), describe(bitsOf(client.view().state->reasons))),
+      fmt::format("mission ended at waypoint {} of {} in mode {}: {} {}", status.waypoint + 1,
+                  status.waypoint_count, modeName(*client.view().state), failureName(status),
+                  describe(bitsOf(client.view().state->reasons))),
       extra);
   return ExitCode::kFailed;
 }
@@ -164,12 +207,15 @@ ExitCode status(const Options& options) {
   StationClient client(options.lcm_url);
   const auto& v = client.view();
   const auto complete = [&] { return v.state && v.estimate && v.tether && v.vehicle; };
-  if (!client.waitUntil(complete, milliseconds(static_cast<std::int64_t>(options.wait_s * 1000.0)))) {
-    return finish(options, "status", ExitCode::kTimeout,
-                  "no station heard; is tautline-station running with --lcm-url " + options.lcm_url + "?");
+  if (!client.waitUntil(complete,
+                        milliseconds(static_cast<std::int64_t>(options.wait_s * 1000.0)))) {
+    return finish(
+        options, "status", ExitCode::kTimeout,
+        "no station heard; is tautline-station running with --lcm-url " + options.lcm_url + "?");
   }
   const char* run_mode = nameOf(static_cast<RunMode>(v.state->run_mode), kRunModeNames);
-  const char* health = nameOf(static_cast<EstimateHealth>(v.estimate->health), kEstimateHealthNames);
+  const char* health =
+      nameOf(static_cast<EstimateHealth>(v.estimate->health), kEstimateHealthNames);
   const char* phase = nameOf(static_cast<VehiclePhase>(v.vehicle->phase), kVehiclePhaseNames);
   const std::string conditions = describe(bitsOf(v.state->conditions));
   if (options.json) {
@@ -180,7 +226,8 @@ ExitCode status(const Options& options) {
                                       {"reasons", describe(bitsOf(v.state->reasons))},
                                       {"estimate_health", health},
                                       {"position_m", {p[0], p[1], p[2]}},
-                                      {"tether_length_m", v.tether->length_free_m + v.tether->length_static_m},
+                                      {"tether_length_m",
+                                       v.tether->length_free_m + v.tether->length_static_m},
                                       {"tension_n", v.tether->tension_n},
                                       {"vehicle", phase},
                                       {"battery_v", v.vehicle->ground_battery_v}}
@@ -189,10 +236,11 @@ ExitCode status(const Options& options) {
   }
   fmt::print("{:<10} {} ({})\n", "mode", modeName(*v.state), run_mode);
   fmt::print("{:<10} {}\n", "conditions", conditions.empty() ? "none" : conditions);
-  fmt::print("{:<10} x {:.2f}  y {:.2f}  z {:.2f} m, {}\n", "position", v.estimate->position_m[0], v.estimate->position_m[1],
-             v.estimate->position_m[2], health);
-  fmt::print("{:<10} {:.2f} m out, {:.2f} N, {} contact(s)\n", "tether", v.tether->length_free_m + v.tether->length_static_m,
-             v.tether->tension_n, v.tether->contact_count);
+  fmt::print("{:<10} x {:.2f}  y {:.2f}  z {:.2f} m, {}\n", "position", v.estimate->position_m[0],
+             v.estimate->position_m[1], v.estimate->position_m[2], health);
+  fmt::print("{:<10} {:.2f} m out, {:.2f} N, {} contact(s)\n", "tether",
+             v.tether->length_free_m + v.tether->length_static_m, v.tether->tension_n,
+             v.tether->contact_count);
   fmt::print("{:<10} {}, ground battery {:.1f} V\n", "vehicle", phase, v.vehicle->ground_battery_v);
   return ExitCode::kOk;
 }
@@ -210,12 +258,14 @@ void addFlightCommands(CLI::App& root, ExitCode& result) {
     return verb;
   };
   const auto withTimeout = [options](CLI::App* verb) {
-    verb->add_option("--timeout", options->timeout_s, "give up waiting after this many seconds")->check(CLI::Range(0.1, 86400.0));
+    verb->add_option("--timeout", options->timeout_s, "give up waiting after this many seconds")
+        ->check(CLI::Range(0.1, 86400.0));
     return verb;
   };
 
   CLI::App* status_verb = add("status", "What the station is doing", "tautline status --json");
-  status_verb->add_option("--wait", options->wait_s, "how long to wait for a station [s]")->capture_default_str();
+  status_verb->add_option("--wait", options->wait_s, "how long to wait for a station [s]")
+      ->capture_default_str();
   status_verb->callback([options, &result] { result = status(*options); });
 
   struct Verb {
@@ -227,12 +277,18 @@ void addFlightCommands(CLI::App& root, ExitCode& result) {
     int patience_s;
   };
   constexpr Verb kVerbs[] = {
-      {"arm", "Make the station ready for take-off", "tautline arm", Request::kArm, Mode::kArmed, 5},
-      {"disarm", "Back to STANDBY on the ground; also clears a stop", "tautline disarm", Request::kDisarm, Mode::kStandby, 5},
-      {"takeoff", "Take off and hover above home", "tautline takeoff --timeout 60", Request::kTakeoff, Mode::kHold, 60},
-      {"hold", "Hover where it is; ends a mission", "tautline hold", Request::kHold, Mode::kHold, 5},
-      {"land", "Go home, land and stop the motors", "tautline land", Request::kLand, Mode::kStandby, 180},
-      {"stop", "Motors off at once. The drone falls", "tautline stop", Request::kStop, Mode::kEstop, 5},
+      {"arm", "Make the station ready for take-off", "tautline arm", Request::kArm, Mode::kArmed,
+       5},
+      {"disarm", "Back to STANDBY on the ground; also clears a stop", "tautline disarm",
+       Request::kDisarm, Mode::kStandby, 5},
+      {"takeoff", "Take off and hover above home", "tautline takeoff --timeout 60",
+       Request::kTakeoff, Mode::kHold, 60},
+      {"hold", "Hover where it is; ends a mission", "tautline hold", Request::kHold, Mode::kHold,
+       5},
+      {"land", "Go home, land and stop the motors", "tautline land", Request::kLand, Mode::kStandby,
+       180},
+      {"stop", "Motors off at once. The drone falls", "tautline stop", Request::kStop, Mode::kEstop,
+       5},
   };
   for (const Verb& v : kVerbs) {
     withTimeout(add(v.name, v.text, v.example))->callback([options, &result, v] {
@@ -240,7 +296,8 @@ void addFlightCommands(CLI::App& root, ExitCode& result) {
     });
   }
 
-  CLI::App* nav = withTimeout(add("navigate", "Fly a mission file", "tautline navigate config/missions/square.mission.toml"));
+  CLI::App* nav = withTimeout(add("navigate", "Fly a mission file",
+                                  "tautline navigate config/missions/square.mission.toml"));
   nav->add_option("file", options->mission_file, "mission file (*.mission.toml)")->required();
   nav->callback([options, &result] { result = navigate(*options); });
 }

@@ -1,11 +1,11 @@
 /// @file
 /// `tautline`, the operator's command line.
 
+#include <cstdio>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-
-#include <cstdio>
 
 #include "app/cli/black_box_command.h"
 #include "app/cli/flight_command.h"

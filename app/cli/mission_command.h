@@ -9,7 +9,8 @@
 
 namespace tautline::cli {
 
-/// Adds the verb to `root`. When it ran, `result` holds its exit code; bad input is thrown as InputError.
+/// Adds the verb to `root`. When it ran, `result` holds its exit code; bad input is thrown as
+/// InputError.
 void addMissionCommand(CLI::App& root, ExitCode& result);
 
 }  // namespace tautline::cli

@@ -23,7 +23,8 @@ std::int64_t newSession() {
 
 }  // namespace
 
-StationClient::StationClient(const std::string& lcm_url) : lcm_(reachable(lcm_url)), session_(newSession()) {
+StationClient::StationClient(const std::string& lcm_url)
+    : lcm_(reachable(lcm_url)), session_(newSession()) {
   if (!lcm_.good()) throw cannotJoin(lcm_url);
   lcm_.subscribe(channel::kStationState, &StationClient::onState, this);
   lcm_.subscribe(channel::kMissionStatus, &StationClient::onMission, this);
@@ -34,11 +35,13 @@ StationClient::StationClient(const std::string& lcm_url) : lcm_(reachable(lcm_ur
   lcm_.subscribe(channel::kEvent, &StationClient::onEventMessage, this);
 }
 
-void StationClient::onAck(const lcm::ReceiveBuffer*, const std::string&, const tautline::command_ack_t* m) {
+void StationClient::onAck(const lcm::ReceiveBuffer*, const std::string&,
+                          const tautline::command_ack_t* m) {
   if (m->session == session_) ack_ = *m;
 }
 
-void StationClient::onEventMessage(const lcm::ReceiveBuffer*, const std::string&, const tautline::event_t* m) {
+void StationClient::onEventMessage(const lcm::ReceiveBuffer*, const std::string&,
+                                   const tautline::event_t* m) {
   if (event_handler_) event_handler_(*m);
 }
 
@@ -53,7 +56,8 @@ bool StationClient::waitUntil(const std::function<bool()>& done, milliseconds ti
 }
 
 template <class Message>
-std::optional<tautline::command_ack_t> StationClient::sendUntilAcknowledged(const char* channel, Message& message,
+std::optional<tautline::command_ack_t> StationClient::sendUntilAcknowledged(const char* channel,
+                                                                            Message& message,
                                                                             milliseconds timeout) {
   message.session = session_;
   message.sequence = ++sequence_;
@@ -67,7 +71,8 @@ std::optional<tautline::command_ack_t> StationClient::sendUntilAcknowledged(cons
   return std::nullopt;
 }
 
-std::optional<tautline::command_ack_t> StationClient::request(Request request, std::uint64_t mission_hash,
+std::optional<tautline::command_ack_t> StationClient::request(Request request,
+                                                              std::uint64_t mission_hash,
                                                               milliseconds timeout) {
   tautline::operator_command_t message{};
   message.verb = static_cast<std::int8_t>(request);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// A client of the station over LCM: sends commands and missions until they are acknowledged, and follows the state that
-/// the station publishes. Not real-time safe: for operator tools only.
+/// A client of the station over LCM: sends commands and missions until they are acknowledged, and
+/// follows the state that the station publishes. Not real-time safe: for operator tools only.
 
 #include <chrono>
 #include <functional>
@@ -27,7 +27,8 @@ namespace tautline::cli {
 
 class StationClient {
  public:
-  /// @throws InputError (exit code kTimeout) if LCM cannot work on this machine, with the command that mends it.
+  /// @throws InputError (exit code kTimeout) if LCM cannot work on this machine, with the command
+  /// that mends it.
   explicit StationClient(const std::string& lcm_url);
 
   /// Last message of each kind, if any came.
@@ -44,25 +45,41 @@ class StationClient {
   bool waitUntil(const std::function<bool()>& done, std::chrono::milliseconds timeout);
 
   /// Sends one command, again every 200 ms until acknowledged; nullopt: no answer in time.
-  std::optional<tautline::command_ack_t> request(Request request, std::uint64_t mission_hash = 0,
-                                                 std::chrono::milliseconds timeout = std::chrono::seconds(3));
+  std::optional<tautline::command_ack_t> request(
+      Request request, std::uint64_t mission_hash = 0,
+      std::chrono::milliseconds timeout = std::chrono::seconds(3));
 
   /// Sends all of a mission; nullopt: no answer in time. A result other than kAccepted: refused.
   std::optional<tautline::command_ack_t> upload(const MissionPlan& plan);
 
   /// Called for each EVENT while waiting.
-  void onEvent(std::function<void(const tautline::event_t&)> handler) { event_handler_ = std::move(handler); }
+  void onEvent(std::function<void(const tautline::event_t&)> handler) {
+    event_handler_ = std::move(handler);
+  }
 
  private:
   template <class Message>
-  std::optional<tautline::command_ack_t> sendUntilAcknowledged(const char* channel, Message& message,
+  std::optional<tautline::command_ack_t> sendUntilAcknowledged(const char* channel,
+                                                               Message& message,
                                                                std::chrono::milliseconds timeout);
 
-  void onState(const lcm::ReceiveBuffer*, const std::string&, const tautline::station_state_t* m) { view_.state = *m; }
-  void onMission(const lcm::ReceiveBuffer*, const std::string&, const tautline::mission_status_t* m) { view_.mission = *m; }
-  void onEstimate(const lcm::ReceiveBuffer*, const std::string&, const tautline::estimate_t* m) { view_.estimate = *m; }
-  void onTether(const lcm::ReceiveBuffer*, const std::string&, const tautline::tether_state_t* m) { view_.tether = *m; }
-  void onVehicle(const lcm::ReceiveBuffer*, const std::string&, const tautline::vehicle_state_t* m) { view_.vehicle = *m; }
+  void onState(const lcm::ReceiveBuffer*, const std::string&, const tautline::station_state_t* m) {
+    view_.state = *m;
+  }
+  void onMission(const lcm::ReceiveBuffer*, const std::string&,
+                 const tautline::mission_status_t* m) {
+    view_.mission = *m;
+  }
+  void onEstimate(const lcm::ReceiveBuffer*, const std::string&, const tautline::estimate_t* m) {
+    view_.estimate = *m;
+  }
+  void onTether(const lcm::ReceiveBuffer*, const std::string&, const tautline::tether_state_t* m) {
+    view_.tether = *m;
+  }
+  void onVehicle(const lcm::ReceiveBuffer*, const std::string&,
+                 const tautline::vehicle_state_t* m) {
+    view_.vehicle = *m;
+  }
   void onAck(const lcm::ReceiveBuffer*, const std::string&, const tautline::command_ack_t* m);
   void onEventMessage(const lcm::ReceiveBuffer*, const std::string&, const tautline::event_t* m);
 

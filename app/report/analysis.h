@@ -37,7 +37,7 @@ struct Outcome {
   bool mission_completed{};
   bool landed{};  ///< Flew, and is on the ground again with its motors off and unbroken.
   bool flew{};
-  bool crashed{};  ///< Simulator only: touched the ground faster than kCrashSpeed.
+  bool crashed{};  ///< Simulator only: its own verdict, of hard landings and collisions.
   std::optional<double> touchdown_speed;            ///< Simulator only: last touch-down [m/s].
   MissionState mission_state{MissionState::kIdle};  ///< Last one of the flown mission.
   MissionFailure mission_failure{MissionFailure::kNone};
@@ -47,9 +47,6 @@ struct Outcome {
   int waypoint_count{};
   std::string text;  ///< One sentence for people.
 };
-
-/// Faster than a free fall from 5 cm [m/s].
-inline constexpr double kCrashSpeed = 1.0;
 
 /// One segment of the mission as it was flown.
 struct SegmentReport {

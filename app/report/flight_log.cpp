@@ -210,7 +210,7 @@ class Reader {
     if (!isFinite(m.position_m) || !isFinite(m.velocity_mps)) return;
     log_.truth.push_back({t, vector3(m.position_m), vector3(m.velocity_mps), m.tension_n,
                           m.length_m, m.reel_scale, m.tangent_elevation_rad, m.tangent_azimuth_rad,
-                          m.on_ground != 0, m.motors_on != 0, m.contact_count,
+                          m.on_ground != 0, m.motors_on != 0, m.crashed != 0, m.contact_count,
                           vector3(m.anchor_m)});
   }
 

@@ -53,6 +53,7 @@ struct TruthSample {
   double phi{};
   bool on_ground{true};
   bool motors_on{};
+  bool crashed{};
   int contact_count{};
   Eigen::Vector3d p_WA{Eigen::Vector3d::Zero()};
 };

@@ -89,7 +89,8 @@ Outcome findOutcome(const FlightLog& log, const std::vector<MissionSample>& miss
       std::any_of(log.truth.begin(), log.truth.end(), [](const auto& s) { return !s.on_ground; });
   out.flew = log.truth.empty() ? vehicle_flew : truth_flew;
   out.touchdown_speed = touchdownSpeed(log.truth);
-  out.crashed = out.touchdown_speed.value_or(0.0) > kCrashSpeed;
+  out.crashed =
+      std::any_of(log.truth.begin(), log.truth.end(), [](const auto& s) { return s.crashed; });
   const bool vehicle_down = log.vehicle.empty() ||
                             log.vehicle.back().phase == VehiclePhase::kIdle ||
                             log.vehicle.back().phase == VehiclePhase::kStopped;

@@ -29,7 +29,8 @@ namespace {
 constexpr std::size_t kRecordsSize = sizeof(CycleRecord) * BlackBox::kCapacity;
 }  // namespace
 
-CycleRecord makeRecord(const StepInput& in, const StepOutput& out, Duration lateness, Duration work) noexcept {
+CycleRecord makeRecord(const StepInput& in, const StepOutput& out, Duration lateness,
+                       Duration work) noexcept {
   CycleRecord r;
   r.now_ns = in.now.time_since_epoch().count();
   r.lateness_ns = lateness.count();
@@ -59,15 +60,18 @@ BlackBox::BlackBox(const std::filesystem::path& path) {
   if (fd < 0 || ::ftruncate(fd, kFileSize) != 0) {
     const int error = errno;
     if (fd >= 0) ::close(fd);
-    throw InputError({.file = path.string(),
-                      .problem = std::string("cannot make the black box: ") + std::strerror(error),
-                      .remedy = "set black_box to a file that can be written, or to \"\" for none"});
+    throw InputError(
+        {.file = path.string(),
+         .problem = std::string("cannot make the black box: ") + std::strerror(error),
+         .remedy = "set black_box to a file that can be written, or to \"\" for none"});
   }
-  void* memory = ::mmap(nullptr, kFileSize, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, fd, 0);
+  void* memory =
+      ::mmap(nullptr, kFileSize, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, fd, 0);
   const int error = errno;
   ::close(fd);
   if (memory == MAP_FAILED) {
-    throw InputError({.file = path.string(), .problem = std::string("cannot map the black box: ") + std::strerror(error)});
+    throw InputError({.file = path.string(),
+                      .problem = std::string("cannot map the black box: ") + std::strerror(error)});
   }
   header_ = static_cast<Header*>(memory);
   records_ = reinterpret_cast<CycleRecord*>(header_ + 1);
@@ -86,26 +90,35 @@ void BlackBox::record(const CycleRecord& cycle) noexcept {
 
 std::uint32_t BlackBox::print(const std::filesystem::path& path, std::ostream& out) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError({.file = path.string(), .problem = "cannot be read", .remedy = "give the file named by black_box in the station's config"});
+  if (!in)
+    throw InputError({.file = path.string(),
+                      .problem = "cannot be read",
+                      .remedy = "give the file named by black_box in the station's config"});
   Header header{};
   in.read(reinterpret_cast<char*>(&header), sizeof(header));
-  if (!in || std::memcmp(header.magic, Header::kMagic, sizeof(Header::kMagic)) != 0 || header.record_size != sizeof(CycleRecord) ||
-      header.capacity != kCapacity) {
-    throw InputError({.file = path.string(), .problem = "is not a black box of this version of tautline-station"});
+  if (!in || std::memcmp(header.magic, Header::kMagic, sizeof(Header::kMagic)) != 0 ||
+      header.record_size != sizeof(CycleRecord) || header.capacity != kCapacity) {
+    throw InputError({.file = path.string(),
+                      .problem = "is not a black box of this version of tautline-station"});
   }
   const auto records = std::make_unique<CycleRecord[]>(header.capacity);
   in.read(reinterpret_cast<char*>(records.get()), kRecordsSize);
-  const auto stored = static_cast<std::uint32_t>(std::min<std::uint64_t>(header.count, header.capacity));
-  out << "now_s,lateness_us,work_us,mode,conditions,health,waypoint,length_meas_m,elevation_meas_rad,azimuth_meas_rad,"
-         "x_m,y_m,z_m,tension_n,engaged,action,length_rate_mps,elevation_rate_radps,azimuth_rate_radps\n";
+  const auto stored =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(header.count, header.capacity));
+  out << "now_s,lateness_us,work_us,mode,conditions,health,waypoint,length_meas_m,elevation_meas_"
+         "rad,azimuth_meas_rad,"
+         "x_m,y_m,z_m,tension_n,engaged,action,length_rate_mps,elevation_rate_radps,azimuth_rate_"
+         "radps\n";
   for (std::uint64_t i = header.count - stored; i < header.count; ++i) {
     const CycleRecord& r = records[i % header.capacity];
-    out << static_cast<double>(r.now_ns) * 1e-9 << ',' << static_cast<double>(r.lateness_ns) * 1e-3 << ','
-        << static_cast<double>(r.work_ns) * 1e-3 << ',' << nameOf(static_cast<Mode>(r.mode), kModeNames) << ','
+    out << static_cast<double>(r.now_ns) * 1e-9 << ',' << static_cast<double>(r.lateness_ns) * 1e-3
+        << ',' << static_cast<double>(r.work_ns) * 1e-3 << ','
+        << nameOf(static_cast<Mode>(r.mode), kModeNames) << ','
         << describe(ConditionSet::fromBits(r.conditions)) << ','
-        << nameOf(static_cast<EstimateHealth>(r.health), kEstimateHealthNames) << ',' << r.waypoint << ',' << r.length_meas << ','
-        << r.theta_meas << ',' << r.phi_meas << ',' << r.p_WD[0] << ',' << r.p_WD[1] << ',' << r.p_WD[2] << ',' << r.T << ','
-        << static_cast<int>(r.engaged) << ',' << static_cast<int>(r.action) << ',' << r.length_rate << ',' << r.elevation_rate
+        << nameOf(static_cast<EstimateHealth>(r.health), kEstimateHealthNames) << ',' << r.waypoint
+        << ',' << r.length_meas << ',' << r.theta_meas << ',' << r.phi_meas << ',' << r.p_WD[0]
+        << ',' << r.p_WD[1] << ',' << r.p_WD[2] << ',' << r.T << ',' << static_cast<int>(r.engaged)
+        << ',' << static_cast<int>(r.action) << ',' << r.length_rate << ',' << r.elevation_rate
         << ',' << r.azimuth_rate << '\n';
   }
   return stored;

@@ -1,9 +1,10 @@
 #pragma once
 
 /// @file
-/// The last minutes of the loop, cycle by cycle, in a file that outlives the process: a ring of fixed-size records in a
-/// memory-mapped file (by default in /dev/shm, so that writing it never waits for a disk). Whatever ends the station, the
-/// records up to the last finished cycle are there; `tautline blackbox FILE` prints them as CSV.
+/// The last minutes of the loop, cycle by cycle, in a file that outlives the process: a ring of
+/// fixed-size records in a memory-mapped file (by default in /dev/shm, so that writing it never
+/// waits for a disk). Whatever ends the station, the records up to the last finished cycle are
+/// there; `tautline blackbox FILE` prints them as CSV.
 
 #include <cstdint>
 #include <filesystem>
@@ -36,13 +37,15 @@ struct CycleRecord {
 };
 
 /// What to store of a cycle. Real-time safe: no allocation, no locks, no exceptions.
-[[nodiscard]] CycleRecord makeRecord(const StepInput& in, const StepOutput& out, Duration lateness, Duration work) noexcept;
+[[nodiscard]] CycleRecord makeRecord(const StepInput& in, const StepOutput& out, Duration lateness,
+                                     Duration work) noexcept;
 
 class BlackBox {
  public:
   static constexpr std::uint32_t kCapacity = 16384;  ///< Nearly three minutes at 100 Hz.
 
-  /// Makes the file, or starts it anew. The previous run's file is kept beside it with the suffix ".previous".
+  /// Makes the file, or starts it anew. The previous run's file is kept beside it with the suffix
+  /// ".previous".
   /// @throws InputError if it cannot be made. Not real-time safe: start-up only.
   explicit BlackBox(const std::filesystem::path& path);
   ~BlackBox();
@@ -52,8 +55,8 @@ class BlackBox {
   /// Real-time safe: no allocation, no locks, no exceptions.
   void record(const CycleRecord& cycle) noexcept;
 
-  /// Writes a black box file as CSV, oldest cycle first; returns the number of cycles. @throws InputError for a file that is
-  /// none. Not real-time safe.
+  /// Writes a black box file as CSV, oldest cycle first; returns the number of cycles. @throws
+  /// InputError for a file that is none. Not real-time safe.
   static std::uint32_t print(const std::filesystem::path& path, std::ostream& out);
 
  private:

@@ -11,10 +11,11 @@
 namespace tautline {
 
 enum class Severity : std::uint8_t { kInfo, kWarning, kError, kCritical };
-inline constexpr std::array<EnumName<Severity>, 4> kSeverityNames{{{Severity::kInfo, "info"},
-                                                                  {Severity::kWarning, "warning"},
-                                                                  {Severity::kError, "error"},
-                                                                  {Severity::kCritical, "critical"}}};
+inline constexpr std::array<EnumName<Severity>, 4> kSeverityNames{
+    {{Severity::kInfo, "info"},
+     {Severity::kWarning, "warning"},
+     {Severity::kError, "error"},
+     {Severity::kCritical, "critical"}}};
 
 enum class EventCode : std::uint8_t {
   kModeChanged,
@@ -44,28 +45,32 @@ struct EventText {
 
 inline constexpr std::array<EventText, 15> kEventTexts{{
     {EventCode::kModeChanged, Severity::kInfo, "mode ", "", ""},
-    {EventCode::kMissionCompleted, Severity::kInfo, "mission completed", "hovering at its last waypoint", ""},
-    {EventCode::kWaypointTimeout, Severity::kError, "waypoint not reached in time", "mission ended, hovering",
-     "check wind, tether and reel; then navigate again or land"},
-    {EventCode::kNoProgress, Severity::kError, "no progress towards the waypoint", "mission ended, hovering",
-     "look whether the tether is caught; then navigate again or land"},
-    {EventCode::kBadContact, Severity::kError, "waypoint needs a contact that the mission does not have", "mission ended, hovering",
+    {EventCode::kMissionCompleted, Severity::kInfo, "mission completed",
+     "hovering at its last waypoint", ""},
+    {EventCode::kWaypointTimeout, Severity::kError, "waypoint not reached in time",
+     "mission ended, hovering", "check wind, tether and reel; then navigate again or land"},
+    {EventCode::kNoProgress, Severity::kError, "no progress towards the waypoint",
+     "mission ended, hovering", "look whether the tether is caught; then navigate again or land"},
+    {EventCode::kBadContact, Severity::kError,
+     "waypoint needs a contact that the mission does not have", "mission ended, hovering",
      "run `tautline mission check` on the file"},
-    {EventCode::kUnreachable, Severity::kError, "waypoint is beyond the tether", "mission ended, hovering",
-     "run `tautline mission check` on the file"},
-    {EventCode::kSensorsStale, Severity::kError, "tether length or angles are stale", "zero rates until they are back",
+    {EventCode::kUnreachable, Severity::kError, "waypoint is beyond the tether",
+     "mission ended, hovering", "run `tautline mission check` on the file"},
+    {EventCode::kSensorsStale, Severity::kError, "tether length or angles are stale",
+     "zero rates until they are back",
      "check the cable to the ground station and its telemetry rate"},
     {EventCode::kSensorsBack, Severity::kInfo, "tether sensors are back", "", ""},
-    {EventCode::kLinkLost, Severity::kCritical, "link to the vehicle lost", "zero rates; landing when it is back",
-     "check that the device is plugged in and powered"},
+    {EventCode::kLinkLost, Severity::kCritical, "link to the vehicle lost",
+     "zero rates; landing when it is back", "check that the device is plugged in and powered"},
     {EventCode::kLinkBack, Severity::kInfo, "link to the vehicle is back", "", ""},
-    {EventCode::kLocalizationLost, Severity::kError, "localization lost", "zero rates", "hold, then land by hand if it stays lost"},
+    {EventCode::kLocalizationLost, Severity::kError, "localization lost", "zero rates",
+     "hold, then land by hand if it stays lost"},
     {EventCode::kLocalizationBack, Severity::kInfo, "localization is back", "", ""},
     {EventCode::kVehicleFault, Severity::kCritical, "the vehicle reports a fault", "landing",
      "see the flight mode and flags in `tautline status`"},
     {EventCode::kVehicleFaultCleared, Severity::kInfo, "the vehicle's fault is gone", "", ""},
-    {EventCode::kLoopOverruns, Severity::kError, "the control loop misses its period", "mission ended, hovering",
-     "free the machine, or lower loop_rate_hz"},
+    {EventCode::kLoopOverruns, Severity::kError, "the control loop misses its period",
+     "mission ended, hovering", "free the machine, or lower loop_rate_hz"},
 }};
 
 /// Real-time safe: no allocation, no locks, no exceptions.
@@ -73,12 +78,14 @@ inline constexpr std::array<EventText, 15> kEventTexts{{
   return kEventTexts[static_cast<std::size_t>(code)];
 }
 
-static_assert([] {
-  for (std::size_t i = 0; i < kEventTexts.size(); ++i) {
-    if (static_cast<std::size_t>(kEventTexts[i].code) != i) return false;
-  }
-  return true;
-}(), "kEventTexts must be in the order of EventCode");
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kEventTexts.size(); ++i) {
+        if (static_cast<std::size_t>(kEventTexts[i].code) != i) return false;
+      }
+      return true;
+    }(),
+    "kEventTexts must be in the order of EventCode");
 
 /// One event of a cycle.
 struct StationEvent {

@@ -5,17 +5,18 @@
 namespace tautline {
 namespace {
 
-constexpr double kBelowGround = 0.3;                     // [m] the descent aims this far below home, so that it ends on the ground
-constexpr double kGroundHeight = 0.3;                    // [m] no lower for a while and below this: on the ground
+constexpr double kBelowGround =
+    0.3;  // [m] the descent aims this far below home, so that it ends on the ground
+constexpr double kGroundHeight = 0.3;  // [m] no lower for a while and below this: on the ground
 constexpr Duration kNoLowerFor = std::chrono::seconds(2);
-constexpr double kSmallestDescent = 0.01;                // [m]
+constexpr double kSmallestDescent = 0.01;  // [m]
 
 bool isUsable(const Estimate& e) noexcept { return e.valid && e.health != EstimateHealth::kLost; }
 
 }  // namespace
 
-Guidance::Guidance(const GuidanceConfig& config, const ExecutorConfig& executor, const PoleConfig& pole,
-                   const VehicleLimits& limits) noexcept
+Guidance::Guidance(const GuidanceConfig& config, const ExecutorConfig& executor,
+                   const PoleConfig& pole, const VehicleLimits& limits) noexcept
     : config_(config), executor_(executor, pole, limits, contacts_) {}
 
 GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
@@ -65,10 +66,12 @@ void Guidance::enter(const GuidanceInput& in) noexcept {
     contacts_.clear();
     has_flown_ = false;
   }
-  if (in.mode == Mode::kLand) landing_ = contacts_.contactCount() > 0 ? Landing::kRetrace : Landing::kApproach;
+  if (in.mode == Mode::kLand)
+    landing_ = contacts_.contactCount() > 0 ? Landing::kRetrace : Landing::kApproach;
 }
 
-/// Starts what the mode flies as soon as there is an estimate to start from, and moves a landing on.
+/// Starts what the mode flies as soon as there is an estimate to start from, and moves a landing
+/// on.
 void Guidance::fly(const GuidanceInput& in) noexcept {
   if (!isUsable(in.estimate)) return;
   if (in.mode == Mode::kLand) {
@@ -76,7 +79,8 @@ void Guidance::fly(const GuidanceInput& in) noexcept {
   } else if (!under_way_) {
     switch (in.mode) {
       case Mode::kTakeoff:
-        under_way_ = goTo(config_.home_position_m + Eigen::Vector3d(0, config_.takeoff_height_m, 0), config_.travel_speed_mps, in.estimate);
+        under_way_ = goTo(config_.home_position_m + Eigen::Vector3d(0, config_.takeoff_height_m, 0),
+                          config_.travel_speed_mps, in.estimate);
         break;
       case Mode::kAuto:
         under_way_ = in.plan != nullptr && executor_.start(*in.plan, in.estimate);
@@ -89,10 +93,12 @@ void Guidance::fly(const GuidanceInput& in) noexcept {
 
 /// Retrace the contacts, go above home, descend, stop the motors.
 void Guidance::land(const GuidanceInput& in) noexcept {
-  const Eigen::Vector3d above = config_.home_position_m + Eigen::Vector3d(0, config_.approach_height_m, 0);
+  const Eigen::Vector3d above =
+      config_.home_position_m + Eigen::Vector3d(0, config_.approach_height_m, 0);
   const Eigen::Vector3d below = config_.home_position_m - Eigen::Vector3d(0, kBelowGround, 0);
   const MissionState state = executor_.status().state;
-  const bool arrived = under_way_ && (state == MissionState::kCompleted || state == MissionState::kFailed);
+  const bool arrived =
+      under_way_ && (state == MissionState::kCompleted || state == MissionState::kFailed);
   switch (landing_) {
     case Landing::kRetrace:
       if (!under_way_) under_way_ = executor_.goBack(in.estimate);
@@ -127,7 +133,8 @@ bool Guidance::onGround(const GuidanceInput& in) noexcept {
     lowest_ = height;
     lowest_since_ = in.now;
   }
-  return height < config_.touchdown_height_m || (height < kGroundHeight && in.now - lowest_since_ > kNoLowerFor);
+  return height < config_.touchdown_height_m ||
+         (height < kGroundHeight && in.now - lowest_since_ > kNoLowerFor);
 }
 
 bool Guidance::goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& estimate) noexcept {
@@ -138,7 +145,8 @@ bool Guidance::goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& e
 }
 
 VehicleAction Guidance::paced(VehicleAction action, Time now) noexcept {
-  if (last_action_ && now - *last_action_ < fromSeconds(config_.action_period_s)) return VehicleAction::kNone;
+  if (last_action_ && now - *last_action_ < fromSeconds(config_.action_period_s))
+    return VehicleAction::kNone;
   last_action_ = now;
   return action;
 }
@@ -146,10 +154,13 @@ VehicleAction Guidance::paced(VehicleAction action, Time now) noexcept {
 ConditionSet Guidance::conditions() const noexcept {
   const MissionState state = executor_.status().state;
   ConditionSet set;
-  set.set(Condition::kAtTarget, mode_ == Mode::kTakeoff && under_way_ && executor_.status().distance < config_.takeoff_radius_m);
+  set.set(Condition::kAtTarget, mode_ == Mode::kTakeoff && under_way_ &&
+                                    executor_.status().distance < config_.takeoff_radius_m);
   set.set(Condition::kTouchdown, has_flown_ && !vehicle_flying_);
-  set.set(Condition::kMissionDone, mode_ == Mode::kAuto && under_way_ && state == MissionState::kCompleted);
-  set.set(Condition::kMissionFailed, mode_ == Mode::kAuto && under_way_ && state == MissionState::kFailed);
+  set.set(Condition::kMissionDone,
+          mode_ == Mode::kAuto && under_way_ && state == MissionState::kCompleted);
+  set.set(Condition::kMissionFailed,
+          mode_ == Mode::kAuto && under_way_ && state == MissionState::kFailed);
   return set;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// What to fly in each mode: take-off, hover, mission, landing. All of it goes through the one motion executor; guidance
-/// chooses its route and tells the supervisor how far it is.
+/// What to fly in each mode: take-off, hover, mission, landing. All of it goes through the one
+/// motion executor; guidance chooses its route and tells the supervisor how far it is.
 
 #include <optional>
 
@@ -23,11 +23,11 @@ struct GuidanceInput {
   Time now{};
   Duration dt{};
   Mode mode{Mode::kStandby};
-  bool entered{false};            ///< The mode began in this cycle.
-  Estimate estimate;              ///< Usable or not: lost estimates are flown by standing still.
+  bool entered{false};  ///< The mode began in this cycle.
+  Estimate estimate;    ///< Usable or not: lost estimates are flown by standing still.
   bool vehicle_flying{false};
-  const SensorFrame* sensors{};   ///< For look-at.
-  const MissionPlan* plan{};      ///< For AUTO; null: none.
+  const SensorFrame* sensors{};  ///< For look-at.
+  const MissionPlan* plan{};     ///< For AUTO; null: none.
 };
 
 struct GuidanceOutput {
@@ -40,7 +40,8 @@ struct GuidanceOutput {
 /// Real-time safe: no allocation, no locks, no exceptions.
 class Guidance {
  public:
-  Guidance(const GuidanceConfig& config, const ExecutorConfig& executor, const PoleConfig& pole, const VehicleLimits& limits) noexcept;
+  Guidance(const GuidanceConfig& config, const ExecutorConfig& executor, const PoleConfig& pole,
+           const VehicleLimits& limits) noexcept;
   Guidance(const Guidance&) = delete;
   Guidance& operator=(const Guidance&) = delete;
 
@@ -50,7 +51,8 @@ class Guidance {
   [[nodiscard]] ConditionSet conditions() const noexcept;
 
   [[nodiscard]] const ContactStack& contacts() const noexcept { return contacts_; }
-  /// Of the mission flown last, also after the mode has changed: a completed mission stays completed.
+  /// Of the mission flown last, also after the mode has changed: a completed mission stays
+  /// completed.
   [[nodiscard]] const ExecutorStatus& mission() const noexcept { return mission_; }
 
  private:
@@ -72,8 +74,8 @@ class Guidance {
   bool has_flown_{false};  ///< Since arming.
   bool vehicle_flying_{false};
   Landing landing_{Landing::kApproach};
-  double lowest_{0.0};    ///< Least height above home while descending [m].
-  Time lowest_since_{};   ///< When that was reached.
+  double lowest_{0.0};   ///< Least height above home while descending [m].
+  Time lowest_since_{};  ///< When that was reached.
   std::optional<Time> last_action_;
 };
 

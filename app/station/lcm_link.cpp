@@ -8,13 +8,16 @@ namespace tautline {
 
 LcmLink::LcmLink(const std::string& url) : lcm_(reachable(url)) {
   if (!lcm_.good()) throw cannotJoin(url);
-  lcm_.subscribe(channel::kOperatorCommand, &LcmLink::onCommand, this)->setQueueCapacity(kQueueCapacity);
+  lcm_.subscribe(channel::kOperatorCommand, &LcmLink::onCommand, this)
+      ->setQueueCapacity(kQueueCapacity);
   lcm_.subscribe(channel::kMissionChunk, &LcmLink::onChunk, this)->setQueueCapacity(kQueueCapacity);
 }
 
-bool LcmLink::publish(const char* channel, std::int64_t /*utime*/, std::span<const std::uint8_t> bytes) noexcept {
+bool LcmLink::publish(const char* channel, std::int64_t /*utime*/,
+                      std::span<const std::uint8_t> bytes) noexcept {
   // The C function: the C++ one takes a std::string, which would be made anew for each call.
-  return lcm_publish(lcm_.getUnderlyingLCM(), channel, bytes.data(), static_cast<unsigned>(bytes.size())) == 0;
+  return lcm_publish(lcm_.getUnderlyingLCM(), channel, bytes.data(),
+                     static_cast<unsigned>(bytes.size())) == 0;
 }
 
 void LcmLink::poll() noexcept {
@@ -25,7 +28,8 @@ void LcmLink::poll() noexcept {
   }
 }
 
-void LcmLink::onCommand(const lcm::ReceiveBuffer*, const std::string&, const tautline::operator_command_t* m) {
+void LcmLink::onCommand(const lcm::ReceiveBuffer*, const std::string&,
+                        const tautline::operator_command_t* m) {
   OperatorCommand command;
   command.session = m->session;
   command.sequence = m->sequence;
@@ -34,6 +38,9 @@ void LcmLink::onCommand(const lcm::ReceiveBuffer*, const std::string&, const tau
   command_ = command;
 }
 
-void LcmLink::onChunk(const lcm::ReceiveBuffer*, const std::string&, const tautline::mission_chunk_t* m) { chunk_ = *m; }
+void LcmLink::onChunk(const lcm::ReceiveBuffer*, const std::string&,
+                      const tautline::mission_chunk_t* m) {
+  chunk_ = *m;
+}
 
 }  // namespace tautline

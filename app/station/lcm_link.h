@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// The station's side of LCM: publishes finished bytes, takes commands and missions in without ever waiting.
+/// The station's side of LCM: publishes finished bytes, takes commands and missions in without ever
+/// waiting.
 
 #include <cstdint>
 #include <optional>
@@ -18,21 +19,28 @@ namespace tautline {
 
 class LcmLink final : public TelemetrySink {
  public:
-  /// Joins LCM and subscribes; LCM's own reader thread starts here, so construct it before raising the loop's priority.
-  /// @throws InputError (exit code kTimeout) with the command that mends it. Not real-time safe: start-up only.
+  /// Joins LCM and subscribes; LCM's own reader thread starts here, so construct it before raising
+  /// the loop's priority.
+  /// @throws InputError (exit code kTimeout) with the command that mends it. Not real-time safe:
+  /// start-up only.
   explicit LcmLink(const std::string& url);
 
-  bool publish(const char* channel, std::int64_t utime, std::span<const std::uint8_t> bytes) noexcept override;
+  bool publish(const char* channel, std::int64_t utime,
+               std::span<const std::uint8_t> bytes) noexcept override;
 
-  /// Handles what has arrived until there is something for the core, at most a few messages. Never waits, never throws.
+  /// Handles what has arrived until there is something for the core, at most a few messages. Never
+  /// waits, never throws.
   void poll() noexcept;
 
   /// What the last poll() brought; at most one of the two.
   [[nodiscard]] const std::optional<OperatorCommand>& command() const noexcept { return command_; }
-  [[nodiscard]] const tautline::mission_chunk_t* chunk() const noexcept { return chunk_ ? &*chunk_ : nullptr; }
+  [[nodiscard]] const tautline::mission_chunk_t* chunk() const noexcept {
+    return chunk_ ? &*chunk_ : nullptr;
+  }
 
  private:
-  void onCommand(const lcm::ReceiveBuffer*, const std::string&, const tautline::operator_command_t* m);
+  void onCommand(const lcm::ReceiveBuffer*, const std::string&,
+                 const tautline::operator_command_t* m);
   void onChunk(const lcm::ReceiveBuffer*, const std::string&, const tautline::mission_chunk_t* m);
 
   static constexpr int kMaxMessagesPerPoll = 8;

@@ -1,6 +1,6 @@
 /// @file
-/// `tautline-station`: the real-time process. Start-up may fail and says why; after it, the loop of realTimeLoop() runs until
-/// SIGTERM or SIGINT.
+/// `tautline-station`: the real-time process. Start-up may fail and says why; after it, the loop of
+/// realTimeLoop() runs until SIGTERM or SIGINT.
 
 #include <csignal>
 #include <cstdio>
@@ -49,37 +49,47 @@ struct Options {
 void addOptions(CLI::App& app, Options& o) {
   app.add_option("--config", o.config_file, "station's TOML file; without it, all defaults");
   app.add_option("--device", o.device, "serial device, instead of serial.device");
-  app.add_option("--scene", o.scene_file, "scene file whose start is home, instead of core.guidance.home_position_m");
+  app.add_option("--scene", o.scene_file,
+                 "scene file whose start is home, instead of core.guidance.home_position_m");
   app.add_option("--lcm-url", o.lcm_url, "where the other programs are")->capture_default_str();
-  app.add_flag("--check-config", o.check_config, "read everything, say whether it is right, and end");
-  app.add_flag("--print-config", o.print_config, "print the effective configuration as TOML, and end");
+  app.add_flag("--check-config", o.check_config,
+               "read everything, say whether it is right, and end");
+  app.add_flag("--print-config", o.print_config,
+               "print the effective configuration as TOML, and end");
   app.set_version_flag("--version", kVersion);
   app.footer("Example: tautline-station --config config/station.toml --device /dev/ttyACM0");
 }
 
 StationConfig effectiveConfig(const Options& o) {
-  StationConfig config = o.config_file.empty() ? StationConfig{} : loadConfig<StationConfig>(o.config_file);
+  StationConfig config =
+      o.config_file.empty() ? StationConfig{} : loadConfig<StationConfig>(o.config_file);
   if (!o.device.empty()) config.serial.device = o.device;
   if (!o.scene_file.empty()) {
     const Scene scene = sceneInWorld(readScene(o.scene_file));
     if (!scene.start) {
-      throw InputError({.file = o.scene_file, .key = "start_m", .problem = "is missing", .remedy = "say where the drone is parked"});
+      throw InputError({.file = o.scene_file,
+                        .key = "start_m",
+                        .problem = "is missing",
+                        .remedy = "say where the drone is parked"});
     }
     config.core.guidance.home_position_m = *scene.start;
   }
   return config;
 }
 
-/// A bench configuration must never move a real machine: on the bench the device is a pseudo terminal.
+/// A bench configuration must never move a real machine: on the bench the device is a pseudo
+/// terminal.
 void refuseRealDeviceOnBench(const StationConfig& config) {
   if (config.run_mode == RunMode::kReal) return;
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(config.serial.device, error);
   if (error || real.string().starts_with("/dev/pts/")) return;
-  throw InputError({.key = "serial.device",
-                    .problem = config.serial.device + " is a real device, but run_mode is " + nameOf(config.run_mode, kRunModeNames),
-                    .remedy = "use the link made by tautline-sim --pty, or set run_mode = \"REAL\""},
-                   ExitCode::kRefused);
+  throw InputError(
+      {.key = "serial.device",
+       .problem = config.serial.device + " is a real device, but run_mode is " +
+                  nameOf(config.run_mode, kRunModeNames),
+       .remedy = "use the link made by tautline-sim --pty, or set run_mode = \"REAL\""},
+      ExitCode::kRefused);
 }
 
 /// Real-time rights by the config's policy; says what it got.
@@ -87,7 +97,9 @@ void becomeRealTime(const StationConfig& config) {
   for (const RealTimeStep& step : startRealTime({config.realtime_priority, config.realtime_cpu})) {
     if (step.ok) continue;
     if (config.realtime_policy == RealTimePolicy::kEnforce) {
-      throw InputError({.key = "realtime_policy", .problem = "not " + step.name + ": " + step.reason}, ExitCode::kFailed);
+      throw InputError(
+          {.key = "realtime_policy", .problem = "not " + step.name + ": " + step.reason},
+          ExitCode::kFailed);
     }
     fmt::print(stderr, "tautline-station: warning: not {}: {}\n", step.name, step.reason);
   }
@@ -114,26 +126,32 @@ void run(const Options& options) {
   }
   FotokiteDevice device(port, config.fotokite);
   const auto station = std::make_unique<Station>(config.core);
-  const auto black_box = config.black_box.empty() ? nullptr : std::make_unique<BlackBox>(config.black_box);
-  Telemetry telemetry(lcm, config.run_mode, unixOffset(), fromSeconds(1.0 / config.telemetry_rate_hz));
+  const auto black_box =
+      config.black_box.empty() ? nullptr : std::make_unique<BlackBox>(config.black_box);
+  Telemetry telemetry(lcm, config.run_mode, unixOffset(),
+                      fromSeconds(1.0 / config.telemetry_rate_hz));
 
   telemetry.setParams("tautline-station", kVersion, effective);
 
   becomeRealTime(config);
-  fmt::print("tautline-station {}: {} on {}, {:g} Hz, {}; stop with Ctrl-C\n", kVersion, device.name(), config.serial.device,
-             config.loop_rate_hz, nameOf(config.run_mode, kRunModeNames));
+  fmt::print("tautline-station {}: {} on {}, {:g} Hz, {}; stop with Ctrl-C\n", kVersion,
+             device.name(), config.serial.device, config.loop_rate_hz,
+             nameOf(config.run_mode, kRunModeNames));
   std::fflush(stdout);
 
   const LoopParts parts{device, lcm, *station, telemetry, black_box.get()};
-  const LoopSummary summary = realTimeLoop(parts, fromSeconds(1.0 / config.loop_rate_hz), stop_requested);
-  fmt::print("tautline-station: stopped after {} cycles, {} overruns, {} periods skipped\n", summary.statistics.cycles,
-             summary.statistics.overruns, summary.statistics.skipped_periods);
+  const LoopSummary summary =
+      realTimeLoop(parts, fromSeconds(1.0 / config.loop_rate_hz), stop_requested);
+  fmt::print("tautline-station: stopped after {} cycles, {} overruns, {} periods skipped\n",
+             summary.statistics.cycles, summary.statistics.overruns,
+             summary.statistics.skipped_periods);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Tautline's station: flies a tethered drone through its serial device, talks LCM", "tautline-station"};
+  CLI::App app{"Tautline's station: flies a tethered drone through its serial device, talks LCM",
+               "tautline-station"};
   Options options;
   addOptions(app, options);
   std::signal(SIGTERM, onSignal);

@@ -18,16 +18,18 @@ bool isPosition(const double (&p)[3]) noexcept {
 
 bool hasValidShape(const mission_chunk_t& c) noexcept {
   const int total = c.kind == 0 ? c.waypoint_total : c.contact_total;
-  return (c.kind == 0 || c.kind == 1) && c.waypoint_total >= 1 && c.waypoint_total <= kMaxWaypoints &&
-         c.contact_total >= 0 && c.contact_total <= kMaxContacts && c.count >= 1 && c.count <= mission_chunk_t::CAPACITY &&
+  return (c.kind == 0 || c.kind == 1) && c.waypoint_total >= 1 &&
+         c.waypoint_total <= kMaxWaypoints && c.contact_total >= 0 &&
+         c.contact_total <= kMaxContacts && c.count >= 1 && c.count <= mission_chunk_t::CAPACITY &&
          c.first >= 0 && c.first <= total - c.count;
 }
 
 bool isValidItem(const mission_chunk_t& c, int i) noexcept {
   if (!isPosition(c.position_m[i])) return false;
   if (c.kind == 1) return c.contact_id[i] > 0;
-  return c.contact_id[i] >= 0 && (!c.has_look_at[i] || isPosition(c.look_at_m[i])) && c.speed_mps[i] >= 0.0 &&
-         c.speed_mps[i] <= 10.0 && c.hold_s[i] >= 0.0 && c.hold_s[i] <= 1e5 && c.risk[i] >= 0.0 && c.risk[i] <= 1.0;
+  return c.contact_id[i] >= 0 && (!c.has_look_at[i] || isPosition(c.look_at_m[i])) &&
+         c.speed_mps[i] >= 0.0 && c.speed_mps[i] <= 10.0 && c.hold_s[i] >= 0.0 &&
+         c.hold_s[i] <= 1e5 && c.risk[i] >= 0.0 && c.risk[i] <= 1.0;
 }
 
 }  // namespace
@@ -49,7 +51,8 @@ bool MissionStore::add(const mission_chunk_t& c) noexcept {
   }
   MissionPlan& plan = plans_[incoming_];
   const bool same = plan.hash == static_cast<std::uint64_t>(c.mission_hash) &&
-                    plan.waypoint_count == c.waypoint_total && plan.contact_count == c.contact_total;
+                    plan.waypoint_count == c.waypoint_total &&
+                    plan.contact_count == c.contact_total;
   if (!same) begin(c);
   if (complete_) return true;
 

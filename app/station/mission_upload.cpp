@@ -40,8 +40,10 @@ tautline::mission_chunk_t makeChunk(const MissionPlan& plan, int kind, int first
 
 }  // namespace
 
-bool forEachChunk(const MissionPlan& plan, const std::function<bool(tautline::mission_chunk_t&)>& send) {
-  for (const auto& [kind, total] : {std::pair{1, plan.contact_count}, std::pair{0, plan.waypoint_count}}) {
+bool forEachChunk(const MissionPlan& plan,
+                  const std::function<bool(tautline::mission_chunk_t&)>& send) {
+  for (const auto& [kind, total] :
+       {std::pair{1, plan.contact_count}, std::pair{0, plan.waypoint_count}}) {
     for (int first = 0; first < total; first += tautline::mission_chunk_t::CAPACITY) {
       const int count = std::min<int>(tautline::mission_chunk_t::CAPACITY, total - first);
       tautline::mission_chunk_t chunk = makeChunk(plan, kind, first, count);

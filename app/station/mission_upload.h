@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// A mission cut into MISSION_CHUNK messages: the other side of MissionStore, for every client that sends missions.
+/// A mission cut into MISSION_CHUNK messages: the other side of MissionStore, for every client that
+/// sends missions.
 
 #include <functional>
 
@@ -11,8 +12,9 @@
 
 namespace tautline {
 
-/// Calls `send` for each chunk, contacts first, until it returns false; returns whether all were sent. Session, sequence and
-/// utime are left to `send`. Not real-time safe: clients only.
-bool forEachChunk(const MissionPlan& plan, const std::function<bool(tautline::mission_chunk_t&)>& send);
+/// Calls `send` for each chunk, contacts first, until it returns false; returns whether all were
+/// sent. Session, sequence and utime are left to `send`. Not real-time safe: clients only.
+bool forEachChunk(const MissionPlan& plan,
+                  const std::function<bool(tautline::mission_chunk_t&)>& send);
 
 }  // namespace tautline

@@ -13,10 +13,11 @@ namespace tautline {
 
 /// operator_command_t.verb is a Request; this is command_ack_t.result.
 enum class AckResult : std::uint8_t { kAccepted, kRefused, kUnknown, kBadMission };
-inline constexpr std::array<EnumName<AckResult>, 4> kAckResultNames{{{AckResult::kAccepted, "accepted"},
-                                                                    {AckResult::kRefused, "refused"},
-                                                                    {AckResult::kUnknown, "unknown command"},
-                                                                    {AckResult::kBadMission, "mission incomplete or bad"}}};
+inline constexpr std::array<EnumName<AckResult>, 4> kAckResultNames{
+    {{AckResult::kAccepted, "accepted"},
+     {AckResult::kRefused, "refused"},
+     {AckResult::kUnknown, "unknown command"},
+     {AckResult::kBadMission, "mission incomplete or bad"}}};
 
 /// One command as the core sees it.
 struct OperatorCommand {
@@ -31,7 +32,7 @@ struct CommandAck {
   std::int64_t session{0};
   std::int32_t sequence{0};
   AckResult result{AckResult::kAccepted};
-  ConditionSet reasons;     ///< Conditions that refused it.
+  ConditionSet reasons;    ///< Conditions that refused it.
   std::int32_t detail{0};  ///< Mission chunks: waypoints received so far.
 };
 

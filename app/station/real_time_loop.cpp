@@ -10,7 +10,8 @@ constexpr int kParamsEvery = 10;  // statistics periods
 
 }  // namespace
 
-LoopSummary realTimeLoop(const LoopParts& parts, Duration period, const volatile std::sig_atomic_t& stop) {
+LoopSummary realTimeLoop(const LoopParts& parts, Duration period,
+                         const volatile std::sig_atomic_t& stop) {
   LoopStatistics statistics;
   StepInput in;
   TickGrid grid(period, monotonicNow() + period);
@@ -32,7 +33,8 @@ LoopSummary realTimeLoop(const LoopParts& parts, Duration period, const volatile
 
     if (in.now >= next_statistics) {
       next_statistics = in.now + kStatisticsPeriod;
-      parts.telemetry.publishLoop(in.now, period, statistics.snapshot(), parts.station.commandsRefused());
+      parts.telemetry.publishLoop(in.now, period, statistics.snapshot(),
+                                  parts.station.commandsRefused());
       statistics.startWindow();
       if (until_params-- == 0) {
         parts.telemetry.publishParams(in.now);
@@ -43,7 +45,8 @@ LoopSummary realTimeLoop(const LoopParts& parts, Duration period, const volatile
     const Time done = monotonicNow();
     statistics.record(lateness, done - in.now, grid.advance(done));
     in.consecutive_overruns = static_cast<std::int32_t>(statistics.snapshot().consecutive_overruns);
-    if (parts.black_box != nullptr) parts.black_box->record(makeRecord(in, out, lateness, done - in.now));
+    if (parts.black_box != nullptr)
+      parts.black_box->record(makeRecord(in, out, lateness, done - in.now));
   }
   parts.device.shutdown(monotonicNow());
   return {statistics.snapshot()};

@@ -14,17 +14,24 @@ struct ToldCondition {
 constexpr std::array kToldConditions{
     ToldCondition{Condition::kReelStale, EventCode::kSensorsStale, EventCode::kSensorsBack},
     ToldCondition{Condition::kLinkLost, EventCode::kLinkLost, EventCode::kLinkBack},
-    ToldCondition{Condition::kLocalizationLost, EventCode::kLocalizationLost, EventCode::kLocalizationBack},
-    ToldCondition{Condition::kVehicleFault, EventCode::kVehicleFault, EventCode::kVehicleFaultCleared},
+    ToldCondition{Condition::kLocalizationLost, EventCode::kLocalizationLost,
+                  EventCode::kLocalizationBack},
+    ToldCondition{Condition::kVehicleFault, EventCode::kVehicleFault,
+                  EventCode::kVehicleFaultCleared},
 };
 
 EventCode eventOf(MissionFailure failure) noexcept {
   switch (failure) {
-    case MissionFailure::kWaypointTimeout: return EventCode::kWaypointTimeout;
-    case MissionFailure::kNoProgress: return EventCode::kNoProgress;
-    case MissionFailure::kBadContact: return EventCode::kBadContact;
-    case MissionFailure::kUnreachable: return EventCode::kUnreachable;
-    case MissionFailure::kNone: break;
+    case MissionFailure::kWaypointTimeout:
+      return EventCode::kWaypointTimeout;
+    case MissionFailure::kNoProgress:
+      return EventCode::kNoProgress;
+    case MissionFailure::kBadContact:
+      return EventCode::kBadContact;
+    case MissionFailure::kUnreachable:
+      return EventCode::kUnreachable;
+    case MissionFailure::kNone:
+      break;
   }
   return EventCode::kMissionCompleted;
 }
@@ -60,16 +67,18 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   if (in.command && !out_.ack) acknowledge(*in.command);
   if (out_.supervision.changed) enterMode(in.now);
 
-  // Fly: where to, how, and the last gate.  Critical for safety: nothing may come between the gate and the override.
+  // Fly: where to, how, and the last gate.  Critical for safety: nothing may come between the gate
+  // and the override.
   const MissionState mission_before = guidance_.mission().state;
-  const GuidanceOutput guidance = guidance_.update({.now = in.now,
-                                                    .dt = dt,
-                                                    .mode = out_.supervision.mode,
-                                                    .entered = out_.supervision.changed,
-                                                    .estimate = out_.estimate,
-                                                    .vehicle_flying = out_.conditions.has(Condition::kVehicleFlying),
-                                                    .sensors = &in.sensors,
-                                                    .plan = missions_.active()});
+  const GuidanceOutput guidance =
+      guidance_.update({.now = in.now,
+                        .dt = dt,
+                        .mode = out_.supervision.mode,
+                        .entered = out_.supervision.changed,
+                        .estimate = out_.estimate,
+                        .vehicle_flying = out_.conditions.has(Condition::kVehicleFlying),
+                        .sensors = &in.sensors,
+                        .plan = missions_.active()});
   const VehicleCommand wanted = control(dt, guidance);
   const VehicleCommand gated = gate_.apply(dt, wanted).command;
   out_.command = override(gated);
@@ -96,9 +105,11 @@ ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noex
   set.set(Condition::kVehicleStale, unusable(SensorStream::kVehicle));
   set.set(Condition::kLinkLost, !f.link.connected);
   set.set(Condition::kLocalizationLost, !isUsable(estimate));
-  set.set(Condition::kVehicleFault, f.vehicle.sequence > 0 && f.vehicle.value.phase == VehiclePhase::kFault);
-  set.set(Condition::kVehicleFlying, f.vehicle.sequence > 0 && (f.vehicle.value.phase == VehiclePhase::kFlying ||
-                                                                f.vehicle.value.phase == VehiclePhase::kLanding));
+  set.set(Condition::kVehicleFault,
+          f.vehicle.sequence > 0 && f.vehicle.value.phase == VehiclePhase::kFault);
+  set.set(Condition::kVehicleFlying,
+          f.vehicle.sequence > 0 && (f.vehicle.value.phase == VehiclePhase::kFlying ||
+                                     f.vehicle.value.phase == VehiclePhase::kLanding));
   set.set(Condition::kMissionLoaded, missions_.loaded() != nullptr);
   set.set(Condition::kOverruns, in.consecutive_overruns >= config_.overruns_in_a_row);
   return set;
@@ -108,7 +119,8 @@ ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noex
 Request Station::takeCommand(const StepInput& in) noexcept {
   if (in.chunk != nullptr) {
     const bool good = missions_.add(*in.chunk);
-    answer(in.chunk->session, in.chunk->sequence, good ? AckResult::kAccepted : AckResult::kBadMission, {});
+    answer(in.chunk->session, in.chunk->sequence,
+           good ? AckResult::kAccepted : AckResult::kBadMission, {});
     out_.ack->detail = missions_.receivedWaypoints();
   }
   if (!in.command) return Request::kNone;
@@ -122,7 +134,8 @@ Request Station::takeCommand(const StepInput& in) noexcept {
     out_.ack = last_acknowledged_;
     return Request::kNone;
   }
-  if (c.request == Request::kNavigate && (missions_.loaded() == nullptr || missions_.loaded()->hash != c.mission_hash)) {
+  if (c.request == Request::kNavigate &&
+      (missions_.loaded() == nullptr || missions_.loaded()->hash != c.mission_hash)) {
     answer(c.session, c.sequence, AckResult::kBadMission, {});
     return Request::kNone;
   }
@@ -131,10 +144,12 @@ Request Station::takeCommand(const StepInput& in) noexcept {
 
 void Station::acknowledge(const OperatorCommand& command) noexcept {
   const SupervisorOutput& s = out_.supervision;
-  answer(command.session, command.sequence, s.request_taken ? AckResult::kAccepted : AckResult::kRefused, s.refusal);
+  answer(command.session, command.sequence,
+         s.request_taken ? AckResult::kAccepted : AckResult::kRefused, s.refusal);
 }
 
-void Station::answer(std::int64_t session, std::int32_t sequence, AckResult result, ConditionSet reasons) noexcept {
+void Station::answer(std::int64_t session, std::int32_t sequence, AckResult result,
+                     ConditionSet reasons) noexcept {
   out_.ack = CommandAck{session, sequence, result, reasons, 0};
   last_acknowledged_ = *out_.ack;
   if (result != AckResult::kAccepted) ++commands_refused_;
@@ -151,7 +166,8 @@ void Station::enterMode(Time now) noexcept {
   }
 }
 
-/// Rates for the route, by the configured law; standing still where there is none or the law cannot act.
+/// Rates for the route, by the configured law; standing still where there is none or the law cannot
+/// act.
 VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noexcept {
   VehicleCommand command;
   command.engaged = guidance.engaged;
@@ -168,12 +184,15 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   return command;
 }
 
-/// The supervisor's last word: no rates without fresh tether sensors, link and localization; none on the ground.
+/// The supervisor's last word: no rates without fresh tether sensors, link and localization; none
+/// on the ground.
 VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
-  constexpr ConditionSet kStandStill{Condition::kReelStale, Condition::kAnglesStale, Condition::kLinkLost,
-                                     Condition::kVehicleStale, Condition::kLocalizationLost};
+  constexpr ConditionSet kStandStill{Condition::kReelStale, Condition::kAnglesStale,
+                                     Condition::kLinkLost, Condition::kVehicleStale,
+                                     Condition::kLocalizationLost};
   const Mode mode = out_.supervision.mode;
-  const bool may_move = mode == Mode::kTakeoff || mode == Mode::kHold || mode == Mode::kAuto || mode == Mode::kLand;
+  const bool may_move =
+      mode == Mode::kTakeoff || mode == Mode::kHold || mode == Mode::kAuto || mode == Mode::kLand;
   if (may_move && !out_.conditions.any(kStandStill)) return gated;
   gate_.reset();
   VehicleCommand still;
@@ -184,7 +203,8 @@ VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
 }
 
 void Station::tell(StationEvent event) noexcept {
-  if (out_.event_count < static_cast<int>(out_.events.size())) out_.events[static_cast<std::size_t>(out_.event_count++)] = event;
+  if (out_.event_count < static_cast<int>(out_.events.size()))
+    out_.events[static_cast<std::size_t>(out_.event_count++)] = event;
 }
 
 void Station::tellChanges(ConditionSet before) noexcept {
@@ -193,11 +213,13 @@ void Station::tellChanges(ConditionSet before) noexcept {
     const bool is = out_.conditions.has(t.condition);
     if (is != before.has(t.condition)) tell({is ? t.came : t.went, {}, {}});
   }
-  if (out_.conditions.has(Condition::kOverruns) && !before.has(Condition::kOverruns)) tell({EventCode::kLoopOverruns, {}, {}});
+  if (out_.conditions.has(Condition::kOverruns) && !before.has(Condition::kOverruns))
+    tell({EventCode::kLoopOverruns, {}, {}});
 }
 
 void Station::tellMission(const ExecutorStatus& mission) noexcept {
-  if (mission.state == MissionState::kCompleted || mission.state == MissionState::kFailed) tell({eventOf(mission.failure), {}, {}});
+  if (mission.state == MissionState::kCompleted || mission.state == MissionState::kFailed)
+    tell({eventOf(mission.failure), {}, {}});
 }
 
 }  // namespace tautline

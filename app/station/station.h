@@ -1,9 +1,9 @@
 #pragma once
 
 /// @file
-/// The station's core: one cycle from what the sensors say to what the vehicle is told (docs/loop.md). Pure: no clock, no
-/// file, no socket, no log. Around it app/station puts drivers and LCM, app/bench puts the plant; the same input gives the
-/// same output, always.
+/// The station's core: one cycle from what the sensors say to what the vehicle is told
+/// (docs/loop.md). Pure: no clock, no file, no socket, no log. Around it app/station puts drivers
+/// and LCM, app/bench puts the plant; the same input gives the same output, always.
 
 #include <array>
 #include <cstdint>
@@ -32,8 +32,9 @@ struct StepInput {
   Time now{};
   SensorFrame sensors;
   std::optional<OperatorCommand> command;
-  const tautline::mission_chunk_t* chunk{nullptr};  ///< A piece of a mission, or none; used during the call only.
-  std::int32_t consecutive_overruns{0};             ///< Of the loop, as of the last cycle.
+  const tautline::mission_chunk_t* chunk{
+      nullptr};  ///< A piece of a mission, or none; used during the call only.
+  std::int32_t consecutive_overruns{0};  ///< Of the loop, as of the last cycle.
 };
 
 /// All that a cycle says.
@@ -67,7 +68,8 @@ class Station {
   [[nodiscard]] ConditionSet assess(const StepInput& in, const Estimate& estimate) noexcept;
   [[nodiscard]] Request takeCommand(const StepInput& in) noexcept;
   void acknowledge(const OperatorCommand& command) noexcept;
-  void answer(std::int64_t session, std::int32_t sequence, AckResult result, ConditionSet reasons) noexcept;
+  void answer(std::int64_t session, std::int32_t sequence, AckResult result,
+              ConditionSet reasons) noexcept;
   void enterMode(Time now) noexcept;
   [[nodiscard]] VehicleCommand control(Duration dt, const GuidanceOutput& guidance) noexcept;
   [[nodiscard]] VehicleCommand override(const VehicleCommand& gated) noexcept;

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Everything that can be set on the station, in one file (config/station.toml); each part documents its own fields.
+/// Everything that can be set on the station, in one file (config/station.toml); each part
+/// documents its own fields.
 
 #include <string>
 
@@ -35,15 +36,22 @@ struct GuidanceConfig {
 
   template <class Visitor>
   void fields(Visitor& v) {
-    v.field("home_position_m", home_position_m, Range{-1000, 1000},
-            "drone's tether attachment when parked, from the reel outlet; a scene's start replaces it");
-    v.field("takeoff_height_m", takeoff_height_m, Range{0.2, 10}, "height of the first hover above home");
-    v.field("takeoff_radius_m", takeoff_radius_m, Range{0.05, 2}, "take-off ends this close to the hover point");
-    v.field("approach_height_m", approach_height_m, Range{0.1, 10}, "landing descends from this height above home");
-    v.field("travel_speed_mps", travel_speed_mps, Range{0.01, 5}, "speed to the hover point and back home");
+    v.field(
+        "home_position_m", home_position_m, Range{-1000, 1000},
+        "drone's tether attachment when parked, from the reel outlet; a scene's start replaces it");
+    v.field("takeoff_height_m", takeoff_height_m, Range{0.2, 10},
+            "height of the first hover above home");
+    v.field("takeoff_radius_m", takeoff_radius_m, Range{0.05, 2},
+            "take-off ends this close to the hover point");
+    v.field("approach_height_m", approach_height_m, Range{0.1, 10},
+            "landing descends from this height above home");
+    v.field("travel_speed_mps", travel_speed_mps, Range{0.01, 5},
+            "speed to the hover point and back home");
     v.field("descent_speed_mps", descent_speed_mps, Range{0.01, 2}, "speed of the last descent");
-    v.field("touchdown_height_m", touchdown_height_m, Range{0.0, 1}, "motors stop below this height above home");
-    v.field("action_period_s", action_period_s, Range{0.1, 10}, "take-off and motor stop are repeated this often");
+    v.field("touchdown_height_m", touchdown_height_m, Range{0.0, 1},
+            "motors stop below this height above home");
+    v.field("action_period_s", action_period_s, Range{0.1, 10},
+            "take-off and motor stop are repeated this often");
   }
 };
 
@@ -69,7 +77,8 @@ struct CoreConfig {
     v.section("limits", limits);
     v.section("gate", gate);
     v.section("reel_dead_zone", reel_dead_zone);
-    v.field("overruns_in_a_row", overruns_in_a_row, Range{1, 1000}, "this many overruns in a row end a mission");
+    v.field("overruns_in_a_row", overruns_in_a_row, Range{1, 1000},
+            "this many overruns in a row end a mission");
   }
 };
 
@@ -98,8 +107,10 @@ struct StationConfig {
     v.field("loop_rate_hz", loop_rate_hz, Range{10, 1000}, "cycles a second");
     v.field("telemetry_rate_hz", telemetry_rate_hz, Range{1, 1000}, "state messages a second");
     v.field("black_box", black_box, "file of the last cycles; empty: none");
-    v.choice("realtime_policy", realtime_policy, kRealTimePolicyNames, "what to do where the machine refuses real-time rights");
-    v.field("realtime_priority", realtime_priority, Range{0, 98}, "SCHED_FIFO priority; 0 leaves the scheduler alone");
+    v.choice("realtime_policy", realtime_policy, kRealTimePolicyNames,
+             "what to do where the machine refuses real-time rights");
+    v.field("realtime_priority", realtime_priority, Range{0, 98},
+            "SCHED_FIFO priority; 0 leaves the scheduler alone");
     v.field("realtime_cpu", realtime_cpu, Range{-1, 1023}, "processor of the loop; -1: any");
     v.section("serial", serial);
     v.section("fotokite", fotokite);

@@ -41,16 +41,19 @@ Int as(T value) noexcept {
 
 }  // namespace
 
-Telemetry::Telemetry(TelemetrySink& sink, RunMode run_mode, Duration unix_offset, Duration state_period)
+Telemetry::Telemetry(TelemetrySink& sink, RunMode run_mode, Duration unix_offset,
+                     Duration state_period)
     : sink_(sink), run_mode_(run_mode), unix_offset_(unix_offset), state_period_(state_period) {
   for (std::string* text : {&event_.text, &event_.reaction, &event_.remedy}) text->reserve(256);
 }
 
 template <class Message>
-void Telemetry::send(const char* channel, Message& message, Time now, std::span<std::uint8_t> buffer) noexcept {
+void Telemetry::send(const char* channel, Message& message, Time now,
+                     std::span<std::uint8_t> buffer) noexcept {
   message.utime = toMicroseconds(now + unix_offset_);
   const int size = message.encode(buffer.data(), 0, as<int>(buffer.size()));
-  if (size < 0 || !sink_.publish(channel, message.utime, buffer.first(as<std::size_t>(size)))) ++errors_;
+  if (size < 0 || !sink_.publish(channel, message.utime, buffer.first(as<std::size_t>(size))))
+    ++errors_;
 }
 
 void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
@@ -68,8 +71,8 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
 
   const bool due = in.now >= next_state_;
   if (due || out.command.action != VehicleAction::kNone) sendCommand(in.now, out.command);
-  // A change of mode is told at once, so that clients need not wait for the next round; the mission first, so that who sees
-  // the mode change knows how the mission ended.
+  // A change of mode is told at once, so that clients need not wait for the next round; the mission
+  // first, so that who sees the mode change knows how the mission ended.
   if (due || out.supervision.changed) {
     sendMission(in.now, out);
     sendStation(in.now, out);
@@ -152,7 +155,8 @@ void Telemetry::sendStation(Time now, const StepOutput& out) noexcept {
   m.mode = as<std::int8_t>(out.supervision.mode);
   m.conditions = as<std::int32_t>(out.conditions.bits());
   m.reasons = as<std::int32_t>(out.supervision.reasons.bits());
-  m.time_in_mode_us = std::chrono::duration_cast<std::chrono::microseconds>(out.supervision.time_in_mode).count();
+  m.time_in_mode_us =
+      std::chrono::duration_cast<std::chrono::microseconds>(out.supervision.time_in_mode).count();
   m.mission_hash = as<std::int64_t>(out.loaded_hash);
   m.mission_items = out.mission_items;
   send(channel::kStationState, m, now);
@@ -272,7 +276,8 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
   send(channel::kEvent, event_, now);
 }
 
-void Telemetry::publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s, std::int64_t commands_refused) noexcept {
+void Telemetry::publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s,
+                            std::int64_t commands_refused) noexcept {
   tautline::loop_stats_t m{};
   m.period_s = toSeconds(period);
   m.cycles = s.cycles;
@@ -288,13 +293,16 @@ void Telemetry::publishLoop(Time now, Duration period, const LoopStatistics::Sna
   send(channel::kLoopStats, m, now);
 }
 
-void Telemetry::setParams(const std::string& program, const std::string& version, const std::string& toml) {
+void Telemetry::setParams(const std::string& program, const std::string& version,
+                          const std::string& toml) {
   params_.program = program;
   params_.version = version;
   params_.toml = toml;
   params_buffer_.resize(as<std::size_t>(params_.getEncodedSize()));
 }
 
-void Telemetry::publishParams(Time now) noexcept { send(channel::kParams, params_, now, params_buffer_); }
+void Telemetry::publishParams(Time now) noexcept {
+  send(channel::kParams, params_, now, params_buffer_);
+}
 
 }  // namespace tautline

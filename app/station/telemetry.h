@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The station's state as LCM messages. Encoding happens in buffers made at start-up and the sink gets finished bytes:
-/// the typed publish of LCM would allocate in every call.
+/// The station's state as LCM messages. Encoding happens in buffers made at start-up and the sink
+/// gets finished bytes: the typed publish of LCM would allocate in every call.
 
 #include <array>
 #include <cstddef>
@@ -36,36 +36,41 @@ class TelemetrySink {
   TelemetrySink& operator=(const TelemetrySink&) = delete;
   virtual ~TelemetrySink() = default;
 
-  /// @param utime as in the message [us]. Returns false if the message could not be handed on; never throws, never blocks for
-  /// long.
-  virtual bool publish(const char* channel, std::int64_t utime, std::span<const std::uint8_t> bytes) noexcept = 0;
+  /// @param utime as in the message [us]. Returns false if the message could not be handed on;
+  /// never throws, never blocks for long.
+  virtual bool publish(const char* channel, std::int64_t utime,
+                       std::span<const std::uint8_t> bytes) noexcept = 0;
 };
 
-/// Turns cycles into messages. All but the constructor and setParams() are real-time safe: no allocation, no locks, no
-/// exceptions (as far as the sink is).
+/// Turns cycles into messages. All but the constructor and setParams() are real-time safe: no
+/// allocation, no locks, no exceptions (as far as the sink is).
 class Telemetry {
  public:
   /// @param unix_offset what to add to the loop's clock to get `utime`.
-  /// @param state_period how often state messages are published; STATION_INPUT goes out every cycle.
+  /// @param state_period how often state messages are published; STATION_INPUT goes out every
+  /// cycle.
   Telemetry(TelemetrySink& sink, RunMode run_mode, Duration unix_offset, Duration state_period);
 
   /// After each step: inputs, state at its rate, and at once acknowledgements, events and actions.
   void publish(const StepInput& in, const StepOutput& out) noexcept;
 
   /// Once a second.
-  void publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s, std::int64_t commands_refused) noexcept;
+  void publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s,
+                   std::int64_t commands_refused) noexcept;
 
   /// What publishParams() says. Not real-time safe: start-up only.
   void setParams(const std::string& program, const std::string& version, const std::string& toml);
 
-  /// The effective configuration, at start and now and then, so that a log that began late has it too.
+  /// The effective configuration, at start and now and then, so that a log that began late has it
+  /// too.
   void publishParams(Time now) noexcept;
 
   [[nodiscard]] std::int64_t errors() const noexcept { return errors_; }
 
  private:
   template <class Message>
-  void send(const char* channel, Message& message, Time now, std::span<std::uint8_t> buffer) noexcept;
+  void send(const char* channel, Message& message, Time now,
+            std::span<std::uint8_t> buffer) noexcept;
   template <class Message>
   void send(const char* channel, Message& message, Time now) noexcept {
     send(channel, message, now, buffer_);

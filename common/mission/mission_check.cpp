@@ -127,7 +127,8 @@ class Checker {
         std::any_of(stacks_.begin(), stacks_.end(), [&](const std::vector<int>& stack) {
           return std::find(stack.begin(), stack.end(), contact.id) != stack.end();
         });
-    if (!used) add(FindingSeverity::kWarning, "no waypoint uses " + anchorName(contact.id), "remove it");
+    if (!used)
+      add(FindingSeverity::kWarning, "no waypoint uses " + anchorName(contact.id), "remove it");
     if (!scene_) return;
     const double distance = clearance(contact.p_WC, *scene_);
     if (std::abs(distance) > kOnSurface) {
@@ -189,7 +190,8 @@ class Checker {
     const double lowest =
         anchor(i).y() - (tether.dips_below_anchor ? (tether.T_A - tether.H) / w : 0.0);
     if (tether.dips_below_anchor && lowest < floor_) {
-      add(FindingSeverity::kWarning, "at " + newtons(limits_.tension) + " the tether sags onto the floor",
+      add(FindingSeverity::kWarning,
+          "at " + newtons(limits_.tension) + " the tether sags onto the floor",
           "a higher point or more tension");
     }
   }
@@ -204,7 +206,7 @@ class Checker {
     const double jump =
         tautLength(plan_, after, position(i - 1)) - tautLength(plan_, before, position(i - 1));
     add(FindingSeverity::kInfo, (popped > 0 ? "relaxes to " : "forms ") + name(i) +
-                             ", tether length changes by " + metres(std::abs(jump)));
+                                    ", tether length changes by " + metres(std::abs(jump)));
     if (std::abs(jump) > limits_.switch_jump) {
       add(FindingSeverity::kWarning,
           "the tether does not lie on " + name(i) +
@@ -220,13 +222,15 @@ class Checker {
     const Eigen::Vector3d& p = position(i - 1);
     const Eigen::Vector3d& q = position(i);
     if ((p - q).norm() < kSamePlace) {
-      add(FindingSeverity::kWarning, "same position as the waypoint before", "use hold_s to stay there");
+      add(FindingSeverity::kWarning, "same position as the waypoint before",
+          "use hold_s to stay there");
       return;
     }
     const double nearest = distanceToSegment(anchor(i), p, q);
     const bool reported = (q - anchor(i)).norm() < limits_.anchor_margin;
     if (nearest < limits_.anchor_margin && !reported) {
-      add(FindingSeverity::kError, "on the way the drone passes " + metres(nearest) + " from " + name(i),
+      add(FindingSeverity::kError,
+          "on the way the drone passes " + metres(nearest) + " from " + name(i),
           "at least " + metres(limits_.anchor_margin));
     }
     checkPole(i);

@@ -21,7 +21,9 @@ enum class FindingSeverity : std::uint8_t {
   kInfo,     ///< Worth knowing.
 };
 inline constexpr std::array<EnumName<FindingSeverity>, 3> kFindingSeverityNames{
-    {{FindingSeverity::kError, "error"}, {FindingSeverity::kWarning, "warning"}, {FindingSeverity::kInfo, "info"}}};
+    {{FindingSeverity::kError, "error"},
+     {FindingSeverity::kWarning, "warning"},
+     {FindingSeverity::kInfo, "info"}}};
 
 struct MissionFinding {
   FindingSeverity severity{FindingSeverity::kInfo};

@@ -1,6 +1,6 @@
 /// @file
-/// Runs every file of a corpus folder through a libFuzzer entry point, so that any compiler and plain ctest check what
-/// the fuzzer once found. Usage: <fuzzer>_corpus DIR
+/// Runs every file of a corpus folder through a libFuzzer entry point, so that any compiler and
+/// plain ctest check what the fuzzer once found. Usage: <fuzzer>_corpus DIR
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,8 @@ int main(int argc, char** argv) {
   for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
     if (!entry.is_regular_file()) continue;
     std::ifstream in(entry.path(), std::ios::binary);
-    const std::vector<char> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    const std::vector<char> bytes{std::istreambuf_iterator<char>(in),
+                                  std::istreambuf_iterator<char>()};
     const std::vector<std::uint8_t> input(bytes.begin(), bytes.end());
     LLVMFuzzerTestOneInput(input.data(), input.size());
     ++count;

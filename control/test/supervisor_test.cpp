@@ -49,7 +49,8 @@ Driven drivenTo(Mode mode) {
 }
 
 TEST(Supervisor, ReachesEveryMode) {
-  for (const auto& entry : kModeNames) EXPECT_EQ(drivenTo(entry.value).supervisor.mode(), entry.value) << entry.name;
+  for (const auto& entry : kModeNames)
+    EXPECT_EQ(drivenTo(entry.value).supervisor.mode(), entry.value) << entry.name;
 }
 
 TEST(Supervisor, ComesUpDisarmed) {
@@ -57,8 +58,8 @@ TEST(Supervisor, ComesUpDisarmed) {
   EXPECT_EQ(s.step(Time{}, {}, R::kNone).mode, M::kStandby);
 }
 
-// Independent statement of what must hold, whatever the table says: checked for every mode, every request and every set of
-// up to three conditions at once.
+// Independent statement of what must hold, whatever the table says: checked for every mode, every
+// request and every set of up to three conditions at once.
 class AllCases : public ::testing::TestWithParam<Mode> {};
 
 TEST_P(AllCases, EndInASafeMode) {
@@ -69,12 +70,14 @@ TEST_P(AllCases, EndInASafeMode) {
     for (int i = 0; i < n; ++i) {
       for (int j = i; j < n; ++j) {
         for (int k = j; k < n; ++k) {
-          ConditionSet set{kConditionNames[static_cast<std::size_t>(i)].value, kConditionNames[static_cast<std::size_t>(j)].value,
+          ConditionSet set{kConditionNames[static_cast<std::size_t>(i)].value,
+                           kConditionNames[static_cast<std::size_t>(j)].value,
                            kConditionNames[static_cast<std::size_t>(k)].value};
           Driven d = drivenTo(from);
           const SupervisorOutput out = d.step(set, request.value);
           ++cases;
-          const std::string what = std::string(nameOf(from, kModeNames)) + " + " + request.name + " + " + describe(set);
+          const std::string what =
+              std::string(nameOf(from, kModeNames)) + " + " + request.name + " + " + describe(set);
 
           if (request.value == R::kStop || (from == M::kEstop && request.value != R::kDisarm)) {
             EXPECT_EQ(out.mode, M::kEstop) << what;
@@ -86,10 +89,14 @@ TEST_P(AllCases, EndInASafeMode) {
           }
           if (out.mode == M::kArmed && from != M::kArmed) {
             EXPECT_EQ(request.value, R::kArm) << what;
-            EXPECT_TRUE((set & ConditionSet{C::kReelStale, C::kAnglesStale, C::kLinkLost, C::kVehicleFault}).empty()) << what;
+            EXPECT_TRUE(
+                (set & ConditionSet{C::kReelStale, C::kAnglesStale, C::kLinkLost, C::kVehicleFault})
+                    .empty())
+                << what;
           }
           if (out.mode == M::kAuto) {
-            EXPECT_FALSE(set.has(C::kReelStale) || set.has(C::kAnglesStale) || set.has(C::kLocalizationLost) ||
+            EXPECT_FALSE(set.has(C::kReelStale) || set.has(C::kAnglesStale) ||
+                         set.has(C::kLocalizationLost) ||
                          (from == M::kAuto && set.has(C::kMissionFailed)))
                 << what;
             if (from != M::kAuto) {
@@ -102,7 +109,8 @@ TEST_P(AllCases, EndInASafeMode) {
             EXPECT_EQ(out.mode, M::kLand) << what;
           }
           // Disarmed in the air only where the vehicle itself is down.
-          if (out.mode == M::kStandby && (from == M::kHold || from == M::kAuto || from == M::kLand || from == M::kTakeoff)) {
+          if (out.mode == M::kStandby &&
+              (from == M::kHold || from == M::kAuto || from == M::kLand || from == M::kTakeoff)) {
             EXPECT_TRUE(set.has(C::kTouchdown) && !set.has(C::kVehicleFlying)) << what;
           }
           // A change that nobody asked for has a reason.
@@ -116,8 +124,11 @@ TEST_P(AllCases, EndInASafeMode) {
   EXPECT_EQ(cases, 8 * n * (n + 1) * (n + 2) / 6);
 }
 INSTANTIATE_TEST_SUITE_P(Modes, AllCases,
-                         ::testing::Values(M::kStandby, M::kArmed, M::kTakeoff, M::kHold, M::kAuto, M::kLand, M::kEstop),
-                         [](const auto& param_info) { return nameOf(param_info.param, kModeNames); });
+                         ::testing::Values(M::kStandby, M::kArmed, M::kTakeoff, M::kHold, M::kAuto,
+                                           M::kLand, M::kEstop),
+                         [](const auto& param_info) {
+                           return nameOf(param_info.param, kModeNames);
+                         });
 
 TEST(Supervisor, StaleSensorEndsAMissionInHold) {
   for (const C stale : {C::kReelStale, C::kAnglesStale, C::kLocalizationLost}) {
@@ -138,7 +149,8 @@ TEST(Supervisor, RefusalNamesWhatIsInTheWay) {
   d = drivenTo(M::kHold);
   out = d.step(kFlying, R::kNavigate);
   EXPECT_FALSE(out.request_taken);
-  EXPECT_EQ(out.refusal, ConditionSet{C::kMissionLoaded}) << "what is missing counts as a reason too";
+  EXPECT_EQ(out.refusal, ConditionSet{C::kMissionLoaded})
+      << "what is missing counts as a reason too";
 
   out = drivenTo(M::kStandby).step({}, R::kTakeoff);
   EXPECT_FALSE(out.request_taken);

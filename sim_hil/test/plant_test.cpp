@@ -56,12 +56,22 @@ TEST_P(Hold, SettlesWellDampedAfterATurn) {
   rig.run(0.5);
   rig.rates(0.0, 0.0);
   double peak = 0.0;
+  double settled = 0.0;  // last time that it was more than 0.01 rad off
+  double t = 0.0;
   const double goal = truth.setpoint_azimuth;
   const auto azimuth = [&] { return std::atan2(truth.p_WD.x(), truth.p_WD.z()); };
-  rig.run(2.0, [&] { peak = std::fmax(peak, azimuth() - goal); });
+  const auto watch = [&] {
+    t += config.step;
+    peak = std::fmax(peak, azimuth() - goal);
+    if (std::abs(azimuth() - goal) > 0.01) settled = t;
+  };
+  rig.run(2.0, watch);
   EXPECT_LT(peak, 0.04) << "overshoot";
   EXPECT_NEAR(azimuth(), goal, 0.02) << "after 2 s";
-  rig.run(2.0);
+  rig.run(2.0, watch);
+  // For docs/simulator.md: sim_hil_test --gtest_output=json:figures.json
+  RecordProperty("settled_ms", static_cast<int>(1000.0 * settled));
+  RecordProperty("overshoot_mrad", static_cast<int>(1000.0 * peak));
   EXPECT_NEAR(azimuth(), goal, 0.01) << "after 4 s";
   EXPECT_GT((truth.p_WD - before).norm(), 0.05 * L * std::cos(radians(theta_deg)));
 }

@@ -1,8 +1,11 @@
 #include "sim_hil/tether_chain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -16,6 +19,13 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kStep = 0.002;
 const Eigen::Vector3d kStill = Eigen::Vector3d::Zero();
 const Eigen::Vector3d kDown(0.0, -1.0, 0.0);
+
+/// For docs/simulator.md: sim_hil_test --gtest_output=json:figures.json
+void record(const std::string& name, double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  ::testing::Test::RecordProperty(name, text.data());
+}
 
 Obstacles nothing() {
   Scene scene;
@@ -77,6 +87,9 @@ TEST_P(StaticShape, ConvergesToTheCatenary) {
     EXPECT_NEAR(chain.endTension().norm(), T, 1e-3 * T) << links;
     EXPECT_NEAR(std::asin(chain.endTension().normalized().y()), theta, 2e-3) << links;
   }
+  record("error_12_links_m", error[0]);
+  record("error_24_links_m", error[1]);
+  record("error_48_links_m", error[2]);
   EXPECT_LT(error[1], 1e-3 * L) << "24 links";
   EXPECT_LT(error[2], 0.35 * error[0] + 1e-4) << "second order in the number of links";
 }
@@ -134,12 +147,15 @@ TEST(TetherChain, EnergyNeverGrowsWithoutInput) {
       const Obstacles obstacles = nothing();
       double before = chain.energy(mass);
       const double start = before;
+      double growth = -1.0;
       for (int i = 0; i < 5000; ++i) {
         chain.step(h, 2.2, end, kStill, obstacles);
         const double now = chain.energy(mass);
         ASSERT_LE(now, before + 2e-6) << "step " << i << ", h " << h << ", mass " << mass;
+        growth = std::fmax(growth, now - before);
         before = now;
       }
+      record("largest_growth_in_a_step_J", growth);
       EXPECT_LT(before, start);
       EXPECT_GT(before, -mass * kG * 2.3);
     }
@@ -173,6 +189,7 @@ TEST(TetherChain, PendulumPeriod) {
   const double rod = config.density * L;
   const double want = 2.0 * kPi * std::sqrt(L * (m + rod / 3.0) / (kG * (m + rod / 2.0))) *
                       (1.0 + amplitude * amplitude / 16.0);
+  record("period_error_percent", 100.0 * (period / want - 1.0));
   EXPECT_NEAR(period, want, 0.003 * want);
 }
 
@@ -254,6 +271,7 @@ TEST_P(Wrap, RoundAnEdgeAndOffAgain) {
     EXPECT_LT(p.y(), 0.6 * share + 0.03);
   }
   // The tether's bend is at the edge: the length agrees with that of the taut string.
+  record("length_error_m", chain.length() - lengthRoundCorner(chain.position(24)));
   EXPECT_NEAR(chain.length(), lengthRoundCorner(chain.position(24)), 0.015);
   fly(b, a, 6.0);
   EXPECT_TRUE(chain.bends().empty());
@@ -308,7 +326,10 @@ TEST(TetherContact, CapstanLaw) {
   EXPECT_NEAR(slidingTensionRatio(0.0, kPi / 2.0), 1.0, 0.02);
   for (const double wrap : {kPi / 4.0, kPi / 2.0}) {
     const double want = std::exp(0.3 * wrap);
-    EXPECT_NEAR(slidingTensionRatio(0.3, wrap), want, 0.06 * want) << wrap;
+    const double ratio = slidingTensionRatio(0.3, wrap);
+    record("ratio_over_law_at_" + std::to_string(std::lround(wrap * 180.0 / kPi)) + "_deg",
+           ratio / want);
+    EXPECT_NEAR(ratio, want, 0.03 * want) << wrap;
   }
 }
 

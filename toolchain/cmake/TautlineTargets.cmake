@@ -24,6 +24,7 @@ if(TAUTLINE_SANITIZE)
 endif()
 
 if(TAUTLINE_BUILD_FUZZERS)
+  add_custom_target(fuzzers)
   # The libraries under test carry coverage and sanitizers; the fuzzer's own main is linked by tautline_fuzzer().
   target_compile_options(tautline_flags INTERFACE
     -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -98,6 +99,7 @@ function(tautline_fuzzer name)
   cmake_parse_arguments(ARG "" "SOURCE;CORPUS" "LINK" ${ARGN})
   if(TAUTLINE_BUILD_FUZZERS)
     add_executable(${name} ${ARG_SOURCE})
+    add_dependencies(fuzzers ${name})
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/fuzz")
     target_link_options(${name} PRIVATE -fsanitize=fuzzer)
     target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK})

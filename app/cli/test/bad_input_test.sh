@@ -55,7 +55,7 @@ expect 5 'bad.mission.toml: version: missing' "$tautline" mission check "$(chang
 expect 5 'bad.mission.toml:[0-9]+: .*waypoints\[0\].*contact' "$tautline" mission check "$(changed square '0,/contact = 0/s//contact = 3/')"
 expect 5 'bad.mission.toml:[0-9]+: .*waypoints\[1\].*position_m' "$tautline" mission check "$(changed square 's/0\.8, 1\.2, 1\.2/nan, 1.2, 1.2/')"
 expect 5 'bad.mission.toml:[0-9]+: .*waypoints\[0\].*speed_mps' "$tautline" mission check "$(changed square '0,/speed_mps = 0.3/s//speed_mps = -1/')"
-expect 5 'waypoints\[0\].*reach' "$tautline" mission check --scene "$open"  "$(changed square 's/0\.0, 1\.2, 1\.2/0.0, 50.0, 1.2/')"
+expect 5 'bad.mission.toml: waypoints\[0\]: .*mission check' "$tautline" navigate "$(changed square 's/0\.0, 1\.2, 1\.2/0.0, 50.0, 1.2/')"
 printf '1 2 three\n' >"$work/legacy.txt"
 expect 5 'legacy.txt:1' "$tautline" mission import "$work/legacy.txt" -o "$work/new.mission.toml"
 [[ ! -e $work/new.mission.toml ]] && passed=$((passed + 1)) || { failed=$((failed + 1)); echo "FAILED: a refused import left a file"; }

@@ -173,6 +173,8 @@ class Writer {
     m.reel_tension_n = m.tension_n;
     m.reel_scale = 1.02;
     m.on_ground = onGround(t) ? 1 : 0;
+    m.crashed = 0;
+    m.crash_reason = 0;
     m.motors_on = t >= 2.5 && t <= mission_end_ + 3.0 + kLandingTime ? 1 : 0;
     m.contact_count = contact ? 1 : 0;
     copy(anchor, m.anchor_m);

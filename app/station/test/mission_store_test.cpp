@@ -21,7 +21,8 @@ std::unique_ptr<MissionPlan> makePlan(int waypoints, int contacts) {
   plan->hash = 0x123456789abcU + static_cast<std::uint64_t>(waypoints);
   plan->waypoint_count = waypoints;
   plan->contact_count = contacts;
-  for (int i = 0; i < contacts; ++i) plan->contacts[static_cast<std::size_t>(i)] = {10 + i, {0.1 * i, 1.0, -0.2 * i}};
+  for (int i = 0; i < contacts; ++i)
+    plan->contacts[static_cast<std::size_t>(i)] = {10 + i, {0.1 * i, 1.0, -0.2 * i}};
   for (int i = 0; i < waypoints; ++i) {
     Waypoint& w = plan->waypoints[static_cast<std::size_t>(i)];
     w.p_WD = {0.01 * i, 1.0 + 0.001 * i, -0.5};
@@ -63,10 +64,12 @@ void expectSame(const MissionPlan& a, const MissionPlan& b) {
 
 TEST(MissionStore, TakesChunksInAnyOrderAndTwice) {
   std::mt19937 random(7);
-  for (const auto& [waypoints, contacts] : {std::pair{1, 0}, {16, 1}, {17, 2}, {701, 40}, {kMaxWaypoints, kMaxContacts}}) {
+  for (const auto& [waypoints, contacts] :
+       {std::pair{1, 0}, {16, 1}, {17, 2}, {701, 40}, {kMaxWaypoints, kMaxContacts}}) {
     const auto plan = makePlan(waypoints, contacts);
     std::vector<Chunk> chunks = chunksOf(*plan);
-    chunks.insert(chunks.end(), chunks.begin(), chunks.begin() + static_cast<std::ptrdiff_t>(chunks.size() / 2));
+    chunks.insert(chunks.end(), chunks.begin(),
+                  chunks.begin() + static_cast<std::ptrdiff_t>(chunks.size() / 2));
     std::shuffle(chunks.begin(), chunks.end(), random);
     const auto store = std::make_unique<MissionStore>();
     for (const Chunk& chunk : chunks) EXPECT_TRUE(store->add(chunk));
@@ -149,7 +152,8 @@ TEST(MissionStore, RefusesMalformedChunks) {
   }
 }
 
-// Any bytes that decode as a chunk: never a crash (run under the sanitizers), and never a plan that names no contact.
+// Any bytes that decode as a chunk: never a crash (run under the sanitizers), and never a plan that
+// names no contact.
 TEST(MissionStore, SurvivesRandomChunks) {
   std::mt19937_64 random(11);
   const auto store = std::make_unique<MissionStore>();
@@ -157,7 +161,8 @@ TEST(MissionStore, SurvivesRandomChunks) {
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(good.getEncodedSize()));
   for (int round = 0; round < 20000; ++round) {
     good.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    for (int hit = 0; hit < 4; ++hit) bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::uint8_t>(random());
+    for (int hit = 0; hit < 4; ++hit)
+      bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::uint8_t>(random());
     Chunk chunk;
     ASSERT_GT(chunk.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
     store->add(chunk);

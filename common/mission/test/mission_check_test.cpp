@@ -41,7 +41,8 @@ Scene pillarScene() {
 std::string textOf(const std::vector<MissionFinding>& findings) {
   std::string text;
   for (const MissionFinding& f : findings) {
-    text += std::string(nameOf(f.severity, kFindingSeverityNames)) + " " + f.row + ": " + f.text + "\n";
+    text +=
+        std::string(nameOf(f.severity, kFindingSeverityNames)) + " " + f.row + ": " + f.text + "\n";
   }
   return text;
 }
