@@ -245,8 +245,8 @@ void FotokiteDevice::sendRates(Time now, const Rates& rates) noexcept {
   const bool stopping = rates.zero() && rates != sent_;
   if (!stopping && !rates_pace_.due(now)) return;
 
-  // Without engagement the reel must hold: a Pos2 rate of 0 lies outside the reel's dead zone and
-  // lets tether run out.
+  // Without engagement the reel must hold: Pos asks for no change of length, where a Pos2 rate of 0
+  // is only as still as the reel's own zero.
   send(rates.hold ? fotokite::formatPos(0.0, 0.0, 0.0)
                   : fotokite::formatPos2(rates.elevation, rates.azimuth, rates.reel));
   send(fotokite::formatYaw(rates.yaw));

@@ -267,8 +267,11 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
   event_.text.assign(text.text);
   if (event.code == EventCode::kModeChanged) {
     event_.text.append(nameOf(event.mode, kModeNames));
+    const char* separator = " because of ";
     for (const auto& entry : kConditionNames) {
-      if (event.reasons.has(entry.value)) event_.text.append(" ").append(entry.name);
+      if (!event.reasons.has(entry.value)) continue;
+      event_.text.append(separator).append(entry.name);
+      separator = " ";
     }
   }
   event_.reaction.assign(text.reaction);
