@@ -11,11 +11,17 @@
 
 namespace tautline {
 
-/// The error of a program that cannot go on without LCM.
+/// The error of a program that cannot go on without LCM: no route, or a URL that LCM does not know.
 [[nodiscard]] inline InputError cannotJoin(const std::string& url) {
-  return InputError(
-      {.key = "LCM " + url, .problem = "cannot be joined", .remedy = kMulticastRemedy},
-      ExitCode::kTimeout);
+  if (!hasMulticastRoute(url)) {
+    return InputError(
+        {.key = "LCM " + url, .problem = "cannot be joined", .remedy = kMulticastRemedy},
+        ExitCode::kTimeout);
+  }
+  return InputError({.key = "--lcm-url",
+                     .problem = url + " cannot be joined",
+                     .allowed = std::string("e.g. ") + kDefaultLcmUrl},
+                    ExitCode::kUsage);
 }
 
 /// `url` itself. @throws InputError where there is no multicast route for it.

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 namespace tautline {
 
@@ -16,6 +17,20 @@ std::string describe(const InputProblem& p) {
   if (!p.allowed.empty()) text += "; allowed: " + p.allowed;
   if (!p.remedy.empty()) text += "; " + p.remedy;
   return text;
+}
+
+int reportException(const char* program) noexcept {
+  try {
+    throw;
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "%s: error: %s\n", program, e.what());
+    return static_cast<int>(e.code());
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: error: %s\n", program, e.what());
+  } catch (...) {
+    std::fprintf(stderr, "%s: error: unknown exception\n", program);
+  }
+  return static_cast<int>(ExitCode::kFailed);
 }
 
 void checkFailed(const char* condition, const char* file, int line) noexcept {

@@ -10,6 +10,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace tautline {
 
@@ -50,7 +51,12 @@ class InputError : public std::runtime_error {
   ExitCode code_;
 };
 
-/// Prints "program: error: …" to stderr and aborts. Behind TAUTLINE_CHECK.
+/// For a program's outermost catch (...): prints the exception in flight as one line "program:
+/// error: …" on stderr and returns the exit code that belongs to it; kFailed for anything but an
+/// InputError.
+[[nodiscard]] int reportException(const char* program) noexcept;
+
+/// Prints the condition to stderr and aborts. Behind TAUTLINE_CHECK.
 [[noreturn]] void checkFailed(const char* condition, const char* file, int line) noexcept;
 
 }  // namespace tautline

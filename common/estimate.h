@@ -50,6 +50,9 @@ struct Estimate {
   double azimuth_zero{0.0};    ///< Sensed minus true azimuth [rad].
   double nis{0.0};  ///< Normalized innovation squared of the last update, low-passed; about 1 per
                     ///< degree of freedom.
+
+  /// May be acted on. Real-time safe: no allocation, no locks, no exceptions.
+  [[nodiscard]] bool usable() const noexcept { return valid && health != EstimateHealth::kLost; }
 };
 
 }  // namespace tautline

@@ -20,7 +20,7 @@ struct RealTimeStep {
 /// mlockall(present and future) and the heap kept from giving memory back to the kernel.
 [[nodiscard]] RealTimeStep lockMemory();
 
-/// Touches `bytes` of stack so that the loop never faults one in.
+/// Touches the stack that the loop will use, so that it never faults a page in.
 [[nodiscard]] RealTimeStep prefaultStack();
 
 /// Pins the calling thread to one processor.

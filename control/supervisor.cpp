@@ -37,7 +37,7 @@ constexpr std::array kTransitions{
     Transition{in({M::kStandby}), R::kArm, {}, {}, kNotReady, M::kArmed},
     Transition{in({M::kArmed, M::kEstop}), R::kDisarm, {}, {}, {C::kVehicleFlying}, M::kStandby},
     Transition{in({M::kArmed}), R::kTakeoff, {}, {}, kNotReady, M::kTakeoff},
-    Transition{in({M::kHold}), R::kNavigate, {}, {C::kMissionLoaded, C::kVehicleFlying}, kBlind | ConditionSet{C::kOverruns}, M::kAuto},
+    Transition{in({M::kHold}), R::kNavigate, {}, {C::kMissionLoaded, C::kVehicleFlying}, kBlind | ConditionSet{C::kOverruns, C::kTetherElsewhere}, M::kAuto},
     Transition{in({M::kTakeoff, M::kAuto, M::kLand}), R::kHold, {}, {C::kVehicleFlying}, {}, M::kHold},
     Transition{in({M::kTakeoff, M::kHold, M::kAuto}), R::kLand, {}, {}, {}, M::kLand},
     // A station that was restarted in flight takes the vehicle back, disarmed until asked.

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 
 #include "common/fields.h"
@@ -39,17 +40,18 @@ enum class Condition : std::uint8_t {
   kVehicleStale,      ///< No vehicle status in time.
   kLinkLost,          ///< Device not connected, or nothing heard from it at all.
   kLocalizationLost,  ///< The estimate must not be acted on.
-  kVehicleFault,      ///< The vehicle reports a mode or flag that forbids flight.
+  kVehicleFault,      ///< The vehicle reports a mode that forbids flight.
   kVehicleFlying,     ///< The vehicle says that it flies.
   kAtTarget,          ///< The present take-off or landing target is reached.
   kTouchdown,         ///< On the ground at the end of a landing.
   kMissionLoaded,     ///< A complete, valid mission is in memory.
+  kTetherElsewhere,   ///< The loaded mission begins with another contact than the tether now has.
   kMissionDone,       ///< The executor completed it.
   kMissionFailed,     ///< The executor gave up (time-out, no progress, bad contact).
   kOverruns,          ///< Several loop overruns in a row.
   kTimeInMode,        ///< The present mode has lasted longer than it may.
 };
-inline constexpr std::array<EnumName<Condition>, 15> kConditionNames{
+inline constexpr std::array<EnumName<Condition>, 16> kConditionNames{
     {{Condition::kReelStale, "REEL_STALE"},
      {Condition::kAnglesStale, "ANGLES_STALE"},
      {Condition::kAttitudeStale, "ATTITUDE_STALE"},
@@ -61,6 +63,7 @@ inline constexpr std::array<EnumName<Condition>, 15> kConditionNames{
      {Condition::kAtTarget, "AT_TARGET"},
      {Condition::kTouchdown, "TOUCHDOWN"},
      {Condition::kMissionLoaded, "MISSION_LOADED"},
+     {Condition::kTetherElsewhere, "TETHER_ELSEWHERE"},
      {Condition::kMissionDone, "MISSION_DONE"},
      {Condition::kMissionFailed, "MISSION_FAILED"},
      {Condition::kOverruns, "OVERRUNS"},

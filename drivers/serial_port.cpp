@@ -5,6 +5,8 @@
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -71,6 +73,13 @@ SerialStatus configure(int fd, const SerialConfig& config, int& error) noexcept 
   return SerialStatus::kOpen;
 }
 
+/// Unix98 pseudo terminals have the device majors 136 to 143.
+bool isPseudoTerminal(int fd) noexcept {
+  struct stat status {};
+  return fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && major(status.st_rdev) >= 136 &&
+         major(status.st_rdev) <= 143;
+}
+
 std::string reasonText(SerialStatus status, int error, const SerialConfig& config) {
   const std::string& device = config.device;
   switch (status) {
@@ -86,6 +95,10 @@ std::string reasonText(SerialStatus status, int error, const SerialConfig& confi
       return device + ": in use by " + describeHolder(device) + "; stop that program first";
     case SerialStatus::kNotATty:
       return device + ": not a serial device; set the path of one (ls /dev/serial/by-id)";
+    case SerialStatus::kRealDevice:
+      return device +
+             ": is a real device, and only the bench's pseudo terminal is allowed; set run_mode = "
+             "\"REAL\" to use it";
     case SerialStatus::kSettings:
       return device + ": did not take 8N1 at " + std::to_string(config.baud) +
              " baud; choose a rate the adapter offers";
@@ -136,7 +149,9 @@ SerialStatus SerialPort::tryOpen() noexcept {
     // Opening something that is no device at all fails in its own ways.
     return error_ == EISDIR ? SerialStatus::kNotATty : statusOf(error_);
   }
-  const SerialStatus status = configure(fd, config_, error_);
+  const SerialStatus status = config_.pseudo_terminal_only && !isPseudoTerminal(fd)
+                                  ? SerialStatus::kRealDevice
+                                  : configure(fd, config_, error_);
   if (status != SerialStatus::kOpen) {
     ::close(fd);
     return status;

@@ -20,6 +20,9 @@ struct SerialConfig {
   int baud{115200};                    ///< [bit/s], any rate the kernel and the adapter offer.
   bool low_latency{true};  ///< Ask the driver not to hold bytes back; harmless where it cannot.
 
+  bool pseudo_terminal_only{false};  ///< Set by a bench's program, so that it can never move a
+                                     ///< real machine; no key in files.
+
   template <class Visitor>
   void fields(Visitor& v) {
     v.field("device", device, "path of the serial device");
@@ -32,11 +35,12 @@ enum class SerialStatus : std::uint8_t {
   kOpen,
   kNoSuchDevice,
   kPermission,
-  kBusy,       ///< Another program has it.
-  kNotATty,    ///< The path is something else than a serial line.
-  kSettings,   ///< Raw mode or baud rate did not read back as set.
-  kUnplugged,  ///< Was open and went away.
-  kFailed,     ///< Anything else; errno tells.
+  kBusy,        ///< Another program has it.
+  kNotATty,     ///< The path is something else than a serial line.
+  kRealDevice,  ///< Only a pseudo terminal is allowed, and this is none.
+  kSettings,    ///< Raw mode or baud rate did not read back as set.
+  kUnplugged,   ///< Was open and went away.
+  kFailed,      ///< Anything else; errno tells.
 };
 
 /// What open() found. Not real-time safe: start-up only.

@@ -126,13 +126,13 @@ int main(int argc, char** argv) {
   sim::addOptions(app, options);
   std::signal(SIGTERM, sim::onSignal);
   std::signal(SIGINT, sim::onSignal);
+  std::signal(SIGHUP, sim::onSignal);
   try {
     app.parse(argc, argv);
     return sim::run(options);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
-  } catch (const InputError& e) {
-    std::fprintf(stderr, "tautline-sim: error: %s\n", e.what());
-    return static_cast<int>(e.code());
+  } catch (...) {
+    return reportException("tautline-sim");
   }
 }

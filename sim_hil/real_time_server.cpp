@@ -7,6 +7,7 @@
 #include <span>
 
 #include "common/clock.h"
+#include "common/loop_timer.h"
 
 namespace tautline::sim {
 namespace {
@@ -18,14 +19,6 @@ constexpr Duration kPeriod = milliseconds(2);
 constexpr Duration kMaxCatchUp = milliseconds(100);
 constexpr Duration kTruthPeriod = milliseconds(20);
 constexpr Duration kParamsPeriod = seconds(10);
-
-/// Returns early when a signal arrives.
-void sleepUntil(Time t) noexcept {
-  const auto ns = t.time_since_epoch().count();
-  const timespec wake{static_cast<time_t>(ns / 1'000'000'000),
-                      static_cast<long>(ns % 1'000'000'000)};
-  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr);
-}
 
 /// Telemetry that the terminal has not taken yet.
 class Outbox {

@@ -43,8 +43,14 @@ fi
 bin=$root/build/bin
 link=$out/fotokite
 pids=()
-stop() { # stop SIGNAL PID: ends a program and waits for it
+stop() { # stop SIGNAL PID: ends a program, by force after five seconds, and waits for it
+  local i
   kill -"$1" "$2" 2>/dev/null || true
+  for ((i = 0; i < 50; i++)); do
+    kill -0 "$2" 2>/dev/null || break
+    sleep 0.1
+  done
+  kill -KILL "$2" 2>/dev/null || true
   wait "$2" 2>/dev/null || true
 }
 clean_up() {
@@ -59,7 +65,7 @@ fail() {
 }
 
 say "flying $name (seed $seed) with the real programs; log and pictures go to $out"
-rm -f "$out/flight.lcm"
+rm -f "$out"/{flight.lcm,report.json,report.html,series.csv,*.svg,*.txt}
 lcm-logger --quiet --lcm-url="udpm://239.255.76.67:7667?ttl=0" "$out/flight.lcm" >"$out/logger.txt" 2>&1 &
 logger=$!; pids+=("$logger")
 "$bin/tautline-sim" --pty "$link" --scene "$scene" --seed "$seed" --config "$root/config/sim.toml" >"$out/sim.txt" 2>&1 &

@@ -44,6 +44,12 @@ ExitCode fly(const Options& o) {
   if (!o.station_config.empty()) config.station = loadConfig<StationConfig>(o.station_config);
   if (!o.sim_config.empty()) config.sim = loadConfig<sim::SimConfig>(o.sim_config);
   config.seed = o.seed;
+  if (!config.world.start) {
+    throw InputError({.file = o.scene,
+                      .key = "start_m",
+                      .problem = "is missing",
+                      .remedy = "say where the drone is parked"});
+  }
 
   const auto sink = o.log.empty() ? nullptr : std::make_unique<bench::LogSink>(o.log);
   bench::Lockstep flight(config, sink.get());
@@ -95,7 +101,8 @@ ExitCode replayLog(const Options& o) {
                            .dump());
   } else {
     fmt::print("{} cycles replayed, {} commands compared, {} differ{}{}\n", r.cycles,
-               r.commands_compared, r.differences, same ? "" : ": first ", r.first_difference);
+               r.commands_compared, r.differences, r.differences == 0 ? "" : ": first ",
+               r.first_difference);
   }
   return same ? ExitCode::kOk : ExitCode::kFailed;
 }
@@ -144,9 +151,8 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
-  } catch (const InputError& e) {
-    fmt::print(stderr, "tautline-bench: error: {}\n", e.what());
-    return static_cast<int>(e.code());
+  } catch (...) {
+    return reportException("tautline-bench");
   }
   return static_cast<int>(result);
 }

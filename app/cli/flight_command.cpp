@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include <CLI/Config.hpp>
@@ -64,6 +65,14 @@ ExitCode finish(const Options& options, const char* verb, ExitCode code, const s
   return code;
 }
 
+/// " because of …", or nothing.
+std::string becauseOf(std::int32_t bits) {
+  const std::string reasons = describe(bitsOf(bits));
+  return reasons.empty() ? "" : " because of " + reasons;
+}
+
+constexpr const char* kSilent = "the station has fallen silent; it may still fly, look at it";
+
 void printEvents(StationClient& client, const Options& options) {
   if (options.json || options.quiet) return;
   client.onEvent([](const tautline::event_t& e) {
@@ -114,6 +123,7 @@ ExitCode goToMode(const Options& options, const char* verb, Request request, Mod
                                                     : goal;
   bool seen = false;
   const auto settled = [&] {
+    if (client.silent()) return true;
     if (!client.view().state) return false;
     const Mode mode = modeOf(*client.view().state);
     seen = seen || mode == passing || mode == goal;
@@ -122,12 +132,12 @@ ExitCode goToMode(const Options& options, const char* verb, Request request, Mod
   if (!client.waitUntil(settled, limitOf(options, patience))) {
     return finish(options, verb, ExitCode::kTimeout, "accepted, but not done in time");
   }
+  if (client.silent()) return finish(options, verb, ExitCode::kTimeout, kSilent);
   const auto& state = *client.view().state;
   if (modeOf(state) == goal)
     return finish(options, verb, ExitCode::kOk, std::string("done, mode ") + modeName(state));
   return finish(options, verb, ExitCode::kFailed,
-                std::string("ended in mode ") + modeName(state) + " because of " +
-                    describe(bitsOf(state.reasons)));
+                std::string("ended in mode ") + modeName(state) + becauseOf(state.reasons));
 }
 
 const char* failureName(const tautline::mission_status_t& status) {
@@ -144,7 +154,12 @@ void showProgress(const tautline::mission_status_t& m) {
 /// @throws InputError with the first thing that makes the mission unflyable, before any of it is
 /// sent.
 void requireFlyable(const Mission& mission, const std::string& file) {
-  for (const MissionFinding& finding : checkMission(mission, MissionLimits{})) {
+  // The map may be on another machine than this client: then only what needs no map is checked.
+  const bool has_map =
+      std::filesystem::exists(std::filesystem::path(file).parent_path() / mission.map);
+  const std::optional<Scene> scene = has_map ? findScene(mission, file) : std::nullopt;
+  for (const MissionFinding& finding :
+       checkMission(mission, MissionLimits{}, scene ? &*scene : nullptr)) {
     if (finding.severity != FindingSeverity::kError) continue;
     throw InputError({.file = file,
                       .key = finding.row,
@@ -174,6 +189,7 @@ ExitCode navigate(const Options& options) {
   const bool live = !options.json && !options.quiet && isatty(STDOUT_FILENO) != 0;
   bool flying = false;
   const auto ended = [&] {
+    if (client.silent()) return true;
     const auto& v = client.view();
     if (!v.state || !v.mission || v.mission->mission_hash != hash) return false;
     const auto state = static_cast<MissionState>(v.mission->state);
@@ -186,6 +202,7 @@ ExitCode navigate(const Options& options) {
   if (!in_time)
     return finish(options, "navigate", ExitCode::kTimeout,
                   "mission not ended in time; the station goes on");
+  if (client.silent()) return finish(options, "navigate", ExitCode::kTimeout, kSilent);
   const auto& status = *client.view().mission;
   const nlohmann::json extra{{"waypoint", status.waypoint},
                              {"waypoint_count", status.waypoint_count}};
@@ -265,7 +282,8 @@ void addFlightCommands(CLI::App& root, ExitCode& result) {
 
   CLI::App* status_verb = add("status", "What the station is doing", "tautline status --json");
   status_verb->add_option("--wait", options->wait_s, "how long to wait for a station [s]")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 3600.0));
   status_verb->callback([options, &result] { result = status(*options); });
 
   struct Verb {

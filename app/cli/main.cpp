@@ -28,9 +28,8 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? static_cast<int>(ExitCode::kOk) : static_cast<int>(ExitCode::kUsage);
-  } catch (const InputError& e) {
-    std::fprintf(stderr, "tautline: error: %s\n", e.what());
-    return static_cast<int>(e.code());
+  } catch (...) {
+    return reportException("tautline");
   }
   return static_cast<int>(result);
 }

@@ -50,15 +50,6 @@ json summaryJson(const Mission& mission) {
           {"contact_count", mission.plan->contact_count}};
 }
 
-/// The scene to check against: the one given, else the mission's own map if that is a scene.
-std::optional<Scene> findScene(const Mission& mission, const std::string& mission_file,
-                               const std::string& scene_file) {
-  if (!scene_file.empty()) return readScene(scene_file);
-  if (!mission.map.ends_with(".scene.toml")) return std::nullopt;
-  return readScene(
-      (std::filesystem::path(mission_file).parent_path() / mission.map).lexically_normal());
-}
-
 struct CheckArguments {
   std::string file;
   std::string scene;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// `tautline mission check|import|show`: mission files from the command line.
+/// `tautline mission check|import|show|svg`: mission files from the command line.
 
 #include <CLI/App.hpp>
 

@@ -118,8 +118,8 @@ void addMissionSvgCommand(CLI::App& mission, ExitCode& result) {
       ->required()
       ->type_name("OUT.svg");
   verb->footer(
-      "Example:\n  tautline mission svg config/missions/demo.mission.toml --scene "
-      "config/scenes/demo.scene.toml -o demo.svg");
+      "Example:\n  tautline mission svg config/missions/one_contact.mission.toml --scene "
+      "config/scenes/one_contact.scene.toml -o one_contact.svg");
   verb->callback([options, &result] { result = run(*options); });
 }
 

@@ -35,6 +35,16 @@ StationClient::StationClient(const std::string& lcm_url)
   lcm_.subscribe(channel::kEvent, &StationClient::onEventMessage, this);
 }
 
+void StationClient::onState(const lcm::ReceiveBuffer*, const std::string&,
+                            const tautline::station_state_t* m) {
+  view_.state = *m;
+  last_state_ = monotonicNow();
+}
+
+bool StationClient::silent() const {
+  return view_.state && monotonicNow() - last_state_ > std::chrono::seconds(3);
+}
+
 void StationClient::onAck(const lcm::ReceiveBuffer*, const std::string&,
                           const tautline::command_ack_t* m) {
   if (m->session == session_) ack_ = *m;

@@ -5,9 +5,11 @@
 /// follows the state that the station publishes. Not real-time safe: for operator tools only.
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <lcm/lcm-cpp.hpp>
 #include <tautline/command_ack_t.hpp>
@@ -22,6 +24,7 @@
 
 #include "app/station/operator_command.h"
 #include "common/mission_plan.h"
+#include "common/time.h"
 
 namespace tautline::cli {
 
@@ -52,6 +55,10 @@ class StationClient {
   /// Sends all of a mission; nullopt: no answer in time. A result other than kAccepted: refused.
   std::optional<tautline::command_ack_t> upload(const MissionPlan& plan);
 
+  /// No state message for three seconds, after there had been some: the station, or the way to it,
+  /// is gone.
+  [[nodiscard]] bool silent() const;
+
   /// Called for each EVENT while waiting.
   void onEvent(std::function<void(const tautline::event_t&)> handler) {
     event_handler_ = std::move(handler);
@@ -63,9 +70,7 @@ class StationClient {
                                                                Message& message,
                                                                std::chrono::milliseconds timeout);
 
-  void onState(const lcm::ReceiveBuffer*, const std::string&, const tautline::station_state_t* m) {
-    view_.state = *m;
-  }
+  void onState(const lcm::ReceiveBuffer*, const std::string&, const tautline::station_state_t* m);
   void onMission(const lcm::ReceiveBuffer*, const std::string&,
                  const tautline::mission_status_t* m) {
     view_.mission = *m;
@@ -87,6 +92,7 @@ class StationClient {
   std::int64_t session_;
   std::int32_t sequence_{0};
   View view_;
+  Time last_state_{};
   std::optional<tautline::command_ack_t> ack_;
   std::function<void(const tautline::event_t&)> event_handler_;
 };

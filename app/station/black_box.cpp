@@ -1,13 +1,16 @@
 #include "app/station/black_box.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iomanip>
 #include <memory>
 #include <type_traits>
 
@@ -53,12 +56,29 @@ CycleRecord makeRecord(const StepInput& in, const StepOutput& out, Duration late
 }
 
 BlackBox::BlackBox(const std::filesystem::path& path) {
+  if (const int running = ::open(path.c_str(), O_RDONLY | O_CLOEXEC); running >= 0) {
+    const bool in_use = ::flock(running, LOCK_EX | LOCK_NB) != 0;
+    ::close(running);
+    if (in_use) {
+      throw InputError({.file = path.string(),
+                        .problem = "is in use by another tautline-station",
+                        .remedy = "stop that one first, or give this one a black_box of its own"},
+                       ExitCode::kRefused);
+    }
+  }
   std::error_code ignored;
   std::filesystem::rename(path, path.string() + ".previous", ignored);  // there may be none
   constexpr std::size_t kFileSize = sizeof(Header) + kRecordsSize;
+  // Space is reserved now: a full file system must not show itself in the loop. The lock lasts as
+  // long as the descriptor.
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0 || ::ftruncate(fd, kFileSize) != 0) {
-    const int error = errno;
+  int error = 0;
+  if (fd < 0 || ::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+    error = errno;
+  } else {
+    error = ::posix_fallocate(fd, 0, kFileSize);  // returns its error
+  }
+  if (error != 0) {
     if (fd >= 0) ::close(fd);
     throw InputError(
         {.file = path.string(),
@@ -67,12 +87,13 @@ BlackBox::BlackBox(const std::filesystem::path& path) {
   }
   void* memory =
       ::mmap(nullptr, kFileSize, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, fd, 0);
-  const int error = errno;
-  ::close(fd);
   if (memory == MAP_FAILED) {
+    error = errno;
+    ::close(fd);
     throw InputError({.file = path.string(),
                       .problem = std::string("cannot map the black box: ") + std::strerror(error)});
   }
+  fd_ = fd;
   header_ = static_cast<Header*>(memory);
   records_ = reinterpret_cast<CycleRecord*>(header_ + 1);
   std::memcpy(header_->magic, Header::kMagic, sizeof(Header::kMagic));
@@ -81,11 +102,15 @@ BlackBox::BlackBox(const std::filesystem::path& path) {
   header_->count = 0;
 }
 
-BlackBox::~BlackBox() { ::munmap(header_, sizeof(Header) + kRecordsSize); }
+BlackBox::~BlackBox() {
+  ::munmap(header_, sizeof(Header) + kRecordsSize);
+  ::close(fd_);
+}
 
 void BlackBox::record(const CycleRecord& cycle) noexcept {
   records_[header_->count % kCapacity] = cycle;
-  ++header_->count;  // last, so that a reader never sees a record that is not written
+  // Last, and not before the record, so that a reader never counts a record that is not written.
+  std::atomic_ref(header_->count).store(header_->count + 1, std::memory_order_release);
 }
 
 std::uint32_t BlackBox::print(const std::filesystem::path& path, std::ostream& out) {
@@ -103,9 +128,11 @@ std::uint32_t BlackBox::print(const std::filesystem::path& path, std::ostream& o
   }
   const auto records = std::make_unique<CycleRecord[]>(header.capacity);
   in.read(reinterpret_cast<char*>(records.get()), kRecordsSize);
+  if (!in) throw InputError({.file = path.string(), .problem = "is cut short"});
   const auto stored =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(header.count, header.capacity));
-  out << "now_s,lateness_us,work_us,mode,conditions,health,waypoint,length_meas_m,elevation_meas_"
+  out << std::setprecision(12)
+      << "now_s,lateness_us,work_us,mode,conditions,health,waypoint,length_meas_m,elevation_meas_"
          "rad,azimuth_meas_rad,"
          "x_m,y_m,z_m,tension_n,engaged,action,length_rate_mps,elevation_rate_radps,azimuth_rate_"
          "radps\n";

@@ -46,7 +46,8 @@ class BlackBox {
 
   /// Makes the file, or starts it anew. The previous run's file is kept beside it with the suffix
   /// ".previous".
-  /// @throws InputError if it cannot be made. Not real-time safe: start-up only.
+  /// @throws InputError if it cannot be made, or another station uses it. Not real-time safe:
+  /// start-up only.
   explicit BlackBox(const std::filesystem::path& path);
   ~BlackBox();
   BlackBox(const BlackBox&) = delete;
@@ -61,6 +62,7 @@ class BlackBox {
 
  private:
   struct Header;
+  int fd_{-1};               ///< Holds the lock that keeps a second station away.
   Header* header_{nullptr};  ///< Start of the mapped file; the records follow it.
   CycleRecord* records_{nullptr};
 };

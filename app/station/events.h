@@ -26,6 +26,8 @@ enum class EventCode : std::uint8_t {
   kUnreachable,
   kSensorsStale,
   kSensorsBack,
+  kVehicleStale,
+  kVehicleBack,
   kLinkLost,
   kLinkBack,
   kLocalizationLost,
@@ -43,7 +45,7 @@ struct EventText {
   const char* remedy;
 };
 
-inline constexpr std::array<EventText, 15> kEventTexts{{
+inline constexpr std::array<EventText, 17> kEventTexts{{
     {EventCode::kModeChanged, Severity::kInfo, "mode ", "", ""},
     {EventCode::kMissionCompleted, Severity::kInfo, "mission completed",
      "hovering at its last waypoint", ""},
@@ -60,11 +62,15 @@ inline constexpr std::array<EventText, 15> kEventTexts{{
      "zero rates until they are back",
      "check the cable to the ground station and its telemetry rate"},
     {EventCode::kSensorsBack, Severity::kInfo, "tether sensors are back", "", ""},
+    {EventCode::kVehicleStale, Severity::kError, "no status from the vehicle",
+     "zero rates; landing when it is back",
+     "check the vehicle's power and its link to the ground station"},
+    {EventCode::kVehicleBack, Severity::kInfo, "the vehicle's status is back", "", ""},
     {EventCode::kLinkLost, Severity::kCritical, "link to the vehicle lost",
      "zero rates; landing when it is back", "check that the device is plugged in and powered"},
     {EventCode::kLinkBack, Severity::kInfo, "link to the vehicle is back", "", ""},
     {EventCode::kLocalizationLost, Severity::kError, "localization lost", "zero rates",
-     "hold, then land by hand if it stays lost"},
+     "wait for it to come back; `tautline stop` cuts the motors"},
     {EventCode::kLocalizationBack, Severity::kInfo, "localization is back", "", ""},
     {EventCode::kVehicleFault, Severity::kCritical, "the vehicle reports a fault", "landing",
      "see the flight mode and flags in `tautline status`"},

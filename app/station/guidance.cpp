@@ -9,9 +9,8 @@ constexpr double kBelowGround =
     0.3;  // [m] the descent aims this far below home, so that it ends on the ground
 constexpr double kGroundHeight = 0.3;  // [m] no lower for a while and below this: on the ground
 constexpr Duration kNoLowerFor = std::chrono::seconds(2);
+constexpr int kGroundedSamples = 2;
 constexpr double kSmallestDescent = 0.01;  // [m]
-
-bool isUsable(const Estimate& e) noexcept { return e.valid && e.health != EstimateHealth::kLost; }
 
 }  // namespace
 
@@ -21,9 +20,8 @@ Guidance::Guidance(const GuidanceConfig& config, const ExecutorConfig& executor,
 
 GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
   mode_ = in.mode;
-  vehicle_flying_ = in.vehicle_flying;
   if (in.entered) enter(in);
-  if (in.vehicle_flying && in.mode != Mode::kStandby) has_flown_ = true;
+  watchVehicle(in);
 
   GuidanceOutput out;
   switch (in.mode) {
@@ -35,7 +33,7 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
       out.action = paced(VehicleAction::kMotorStop, in.now);
       return out;
     case Mode::kTakeoff:
-      if (!in.vehicle_flying && !has_flown_) out.action = paced(VehicleAction::kTakeoff, in.now);
+      if (!has_flown_) out.action = paced(VehicleAction::kTakeoff, in.now);
       break;
     case Mode::kLand:
       if (landing_ == Landing::kStopMotors) out.action = paced(VehicleAction::kMotorStop, in.now);
@@ -45,8 +43,10 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
       break;
   }
   out.engaged = true;
-  out.reel_controller = in.vehicle_flying;
-  if (!in.vehicle_flying) return out;
+  // Once it has flown it counts as airborne until it says that it stands: a fault in the air is no
+  // touch-down.
+  out.reel_controller = has_flown_;
+  if (!has_flown_) return out;
 
   fly(in);
   ExecutorInput executor_in;
@@ -56,6 +56,16 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
   out.route = executor_.update(in.dt, executor_in);
   if (in.mode == Mode::kAuto && under_way_) mission_ = executor_.status();
   return out;
+}
+
+/// One garbled status line must not end a flight, so standing takes several samples in a row.
+void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
+  const bool stands = in.vehicle == VehiclePhase::kIdle || in.vehicle == VehiclePhase::kStopped;
+  const bool flies = in.vehicle == VehiclePhase::kFlying || in.vehicle == VehiclePhase::kLanding;
+  if (flies && in.mode != Mode::kStandby) has_flown_ = true;
+  if (!stands) grounded_samples_ = 0;
+  if (stands && in.sensors->vehicle.sequence != vehicle_sequence_) ++grounded_samples_;
+  vehicle_sequence_ = in.sensors->vehicle.sequence;
 }
 
 void Guidance::enter(const GuidanceInput& in) noexcept {
@@ -73,7 +83,7 @@ void Guidance::enter(const GuidanceInput& in) noexcept {
 /// Starts what the mode flies as soon as there is an estimate to start from, and moves a landing
 /// on.
 void Guidance::fly(const GuidanceInput& in) noexcept {
-  if (!isUsable(in.estimate)) return;
+  if (!in.estimate.usable()) return;
   if (in.mode == Mode::kLand) {
     land(in);
   } else if (!under_way_) {
@@ -91,40 +101,37 @@ void Guidance::fly(const GuidanceInput& in) noexcept {
   }
 }
 
-/// Retrace the contacts, go above home, descend, stop the motors.
+/// Retrace the contacts, go above home, descend, stop the motors. A step that fails is tried again
+/// from where the drone is: to give up in the air is no landing.
 void Guidance::land(const GuidanceInput& in) noexcept {
   const Eigen::Vector3d above =
       config_.home_position_m + Eigen::Vector3d(0, config_.approach_height_m, 0);
   const Eigen::Vector3d below = config_.home_position_m - Eigen::Vector3d(0, kBelowGround, 0);
   const MissionState state = executor_.status().state;
-  const bool arrived =
-      under_way_ && (state == MissionState::kCompleted || state == MissionState::kFailed);
-  switch (landing_) {
-    case Landing::kRetrace:
-      if (!under_way_) under_way_ = executor_.goBack(in.estimate);
-      if (!under_way_ || arrived) {
-        landing_ = Landing::kApproach;
-        under_way_ = goTo(above, config_.travel_speed_mps, in.estimate);
-      }
-      break;
-    case Landing::kApproach:
-      if (!under_way_) under_way_ = goTo(above, config_.travel_speed_mps, in.estimate);
-      if (arrived) {
-        landing_ = Landing::kDescend;
-        lowest_ = in.estimate.p_WD.y() - config_.home_position_m.y();
-        lowest_since_ = in.now;
-        under_way_ = goTo(below, config_.descent_speed_mps, in.estimate);
-      }
-      break;
-    case Landing::kDescend:
-      if (onGround(in)) {
-        landing_ = Landing::kStopMotors;
-        executor_.abort();
-      }
-      break;
-    case Landing::kStopMotors:
-      break;
+  const bool arrived = under_way_ && state == MissionState::kCompleted;
+  if (under_way_ && state == MissionState::kFailed) under_way_ = false;
+
+  if (landing_ == Landing::kRetrace) {
+    if (!under_way_) under_way_ = executor_.goBack(in.estimate);
+    if (!under_way_ || arrived) {
+      landing_ = Landing::kApproach;
+      under_way_ = false;
+    }
+  } else if (landing_ == Landing::kApproach && arrived) {
+    landing_ = Landing::kDescend;
+    under_way_ = false;
+    lowest_ = in.estimate.p_WD.y() - config_.home_position_m.y();
+    lowest_since_ = in.now;
+  } else if (landing_ == Landing::kDescend && onGround(in)) {
+    landing_ = Landing::kStopMotors;
+    executor_.abort();
   }
+
+  if (under_way_) return;
+  if (landing_ == Landing::kApproach)
+    under_way_ = goTo(above, config_.travel_speed_mps, in.estimate);
+  if (landing_ == Landing::kDescend)
+    under_way_ = goTo(below, config_.descent_speed_mps, in.estimate);
 }
 
 bool Guidance::onGround(const GuidanceInput& in) noexcept {
@@ -151,12 +158,22 @@ VehicleAction Guidance::paced(VehicleAction action, Time now) noexcept {
   return action;
 }
 
+bool Guidance::startsWithPresentTether(const MissionPlan& plan) const noexcept {
+  constexpr double kSamePoint = 1e-3;  // [m]
+  const int first = plan.waypoints[0].contact;
+  if (first != contacts_.activeId()) return false;
+  const MissionContact* contact = plan.findContact(first);
+  return contact == nullptr || (contact->p_WC - contacts_.anchor().p_WA).norm() < kSamePoint;
+}
+
 ConditionSet Guidance::conditions() const noexcept {
   const MissionState state = executor_.status().state;
   ConditionSet set;
   set.set(Condition::kAtTarget, mode_ == Mode::kTakeoff && under_way_ &&
                                     executor_.status().distance < config_.takeoff_radius_m);
-  set.set(Condition::kTouchdown, has_flown_ && !vehicle_flying_);
+  const bool stands = grounded_samples_ >= kGroundedSamples;
+  // A take-off that never left the ground ends there too.
+  set.set(Condition::kTouchdown, stands && (has_flown_ || mode_ == Mode::kLand));
   set.set(Condition::kMissionDone,
           mode_ == Mode::kAuto && under_way_ && state == MissionState::kCompleted);
   set.set(Condition::kMissionFailed,

@@ -25,9 +25,9 @@ struct GuidanceInput {
   Mode mode{Mode::kStandby};
   bool entered{false};  ///< The mode began in this cycle.
   Estimate estimate;    ///< Usable or not: lost estimates are flown by standing still.
-  bool vehicle_flying{false};
-  const SensorFrame* sensors{};  ///< For look-at.
-  const MissionPlan* plan{};     ///< For AUTO; null: none.
+  VehiclePhase vehicle{VehiclePhase::kUnknown};  ///< What the vehicle says it is doing.
+  const SensorFrame* sensors{};                  ///< For look-at.
+  const MissionPlan* plan{};                     ///< For AUTO; null: none.
 };
 
 struct GuidanceOutput {
@@ -50,6 +50,10 @@ class Guidance {
   /// kAtTarget, kTouchdown, kMissionDone and kMissionFailed, as of the last update.
   [[nodiscard]] ConditionSet conditions() const noexcept;
 
+  /// Whether the contact that `plan` begins with is the one the tether now hangs on; any other
+  /// beginning would put the estimate on a wrong anchor.
+  [[nodiscard]] bool startsWithPresentTether(const MissionPlan& plan) const noexcept;
+
   [[nodiscard]] const ContactStack& contacts() const noexcept { return contacts_; }
   /// Of the mission flown last, also after the mode has changed: a completed mission stays
   /// completed.
@@ -63,6 +67,7 @@ class Guidance {
   void land(const GuidanceInput& in) noexcept;
   bool goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& estimate) noexcept;
   [[nodiscard]] bool onGround(const GuidanceInput& in) noexcept;
+  void watchVehicle(const GuidanceInput& in) noexcept;
   [[nodiscard]] VehicleAction paced(VehicleAction action, Time now) noexcept;
 
   const GuidanceConfig& config_;
@@ -70,9 +75,10 @@ class Guidance {
   MotionExecutor executor_;
   ExecutorStatus mission_;
   Mode mode_{Mode::kStandby};
-  bool under_way_{false};  ///< The mode's route has been started.
-  bool has_flown_{false};  ///< Since arming.
-  bool vehicle_flying_{false};
+  bool under_way_{false};    ///< The mode's route has been started.
+  bool has_flown_{false};    ///< Since arming.
+  int grounded_samples_{0};  ///< Vehicle status samples in a row that say that it stands.
+  std::uint32_t vehicle_sequence_{0};
   Landing landing_{Landing::kApproach};
   double lowest_{0.0};   ///< Least height above home while descending [m].
   Time lowest_since_{};  ///< When that was reached.

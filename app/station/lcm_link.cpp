@@ -8,9 +8,11 @@ namespace tautline {
 
 LcmLink::LcmLink(const std::string& url) : lcm_(reachable(url)) {
   if (!lcm_.good()) throw cannotJoin(url);
-  lcm_.subscribe(channel::kOperatorCommand, &LcmLink::onCommand, this)
-      ->setQueueCapacity(kQueueCapacity);
-  lcm_.subscribe(channel::kMissionChunk, &LcmLink::onChunk, this)->setQueueCapacity(kQueueCapacity);
+  lcm_t* lcm = lcm_.getUnderlyingLCM();
+  lcm_subscription_set_queue_capacity(
+      lcm_subscribe(lcm, channel::kOperatorCommand, &LcmLink::onCommand, this), kQueueCapacity);
+  lcm_subscription_set_queue_capacity(
+      lcm_subscribe(lcm, channel::kMissionChunk, &LcmLink::onChunk, this), kQueueCapacity);
 }
 
 bool LcmLink::publish(const char* channel, std::int64_t /*utime*/,
@@ -24,23 +26,26 @@ void LcmLink::poll() noexcept {
   command_.reset();
   chunk_.reset();
   for (int i = 0; i < kMaxMessagesPerPoll && !command_ && !chunk_; ++i) {
-    if (lcm_.handleTimeout(0) <= 0) return;
+    if (lcm_handle_timeout(lcm_.getUnderlyingLCM(), 0) <= 0) return;
   }
 }
 
-void LcmLink::onCommand(const lcm::ReceiveBuffer*, const std::string&,
-                        const tautline::operator_command_t* m) {
+void LcmLink::onCommand(const lcm_recv_buf_t* bytes, const char* /*channel*/, void* self) noexcept {
+  tautline::operator_command_t m;
+  if (m.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0)
+    return;  // fixed size: short or foreign bytes are refused
   OperatorCommand command;
-  command.session = m->session;
-  command.sequence = m->sequence;
-  command.request = static_cast<Request>(m->verb);
-  command.mission_hash = static_cast<std::uint64_t>(m->mission_hash);
-  command_ = command;
+  command.session = m.session;
+  command.sequence = m.sequence;
+  command.request = static_cast<Request>(m.verb);
+  command.mission_hash = static_cast<std::uint64_t>(m.mission_hash);
+  static_cast<LcmLink*>(self)->command_ = command;
 }
 
-void LcmLink::onChunk(const lcm::ReceiveBuffer*, const std::string&,
-                      const tautline::mission_chunk_t* m) {
-  chunk_ = *m;
+void LcmLink::onChunk(const lcm_recv_buf_t* bytes, const char* /*channel*/, void* self) noexcept {
+  tautline::mission_chunk_t m;
+  if (m.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0) return;
+  static_cast<LcmLink*>(self)->chunk_ = m;
 }
 
 }  // namespace tautline

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <lcm/lcm-cpp.hpp>
@@ -39,9 +40,10 @@ class LcmLink final : public TelemetrySink {
   }
 
  private:
-  void onCommand(const lcm::ReceiveBuffer*, const std::string&,
-                 const tautline::operator_command_t* m);
-  void onChunk(const lcm::ReceiveBuffer*, const std::string&, const tautline::mission_chunk_t* m);
+  // Raw handlers of the C library: the C++ one makes a std::string of the channel for every
+  // message.
+  static void onCommand(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
+  static void onChunk(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
 
   static constexpr int kMaxMessagesPerPoll = 8;
   static constexpr int kQueueCapacity = 64;

@@ -4,7 +4,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -74,22 +73,9 @@ StationConfig effectiveConfig(const Options& o) {
     }
     config.core.guidance.home_position_m = *scene.start;
   }
+  // A bench must never move a real machine, whatever is plugged in later.
+  config.serial.pseudo_terminal_only = config.run_mode != RunMode::kReal;
   return config;
-}
-
-/// A bench configuration must never move a real machine: on the bench the device is a pseudo
-/// terminal.
-void refuseRealDeviceOnBench(const StationConfig& config) {
-  if (config.run_mode == RunMode::kReal) return;
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::canonical(config.serial.device, error);
-  if (error || real.string().starts_with("/dev/pts/")) return;
-  throw InputError(
-      {.key = "serial.device",
-       .problem = config.serial.device + " is a real device, but run_mode is " +
-                  nameOf(config.run_mode, kRunModeNames),
-       .remedy = "use the link made by tautline-sim --pty, or set run_mode = \"REAL\""},
-      ExitCode::kRefused);
 }
 
 /// Real-time rights by the config's policy; says what it got.
@@ -117,10 +103,12 @@ void run(const Options& options) {
     return;
   }
 
-  refuseRealDeviceOnBench(config);
   LcmLink lcm(options.lcm_url);
   SerialPort port(config.serial);
-  if (const SerialOpenResult opened = port.open(); !opened) {
+  const SerialOpenResult opened = port.open();
+  if (opened.status == SerialStatus::kRealDevice)
+    throw InputError({.problem = opened.reason}, ExitCode::kRefused);
+  if (!opened) {
     // The loop goes on and keeps trying: a device that is plugged in later must not need a restart.
     fmt::print(stderr, "tautline-station: warning: {}; trying again\n", opened.reason);
   }
@@ -140,11 +128,10 @@ void run(const Options& options) {
   std::fflush(stdout);
 
   const LoopParts parts{device, lcm, *station, telemetry, black_box.get()};
-  const LoopSummary summary =
+  const LoopStatistics::Snapshot summary =
       realTimeLoop(parts, fromSeconds(1.0 / config.loop_rate_hz), stop_requested);
   fmt::print("tautline-station: stopped after {} cycles, {} overruns, {} periods skipped\n",
-             summary.statistics.cycles, summary.statistics.overruns,
-             summary.statistics.skipped_periods);
+             summary.cycles, summary.overruns, summary.skipped_periods);
 }
 
 }  // namespace
@@ -156,14 +143,14 @@ int main(int argc, char** argv) {
   addOptions(app, options);
   std::signal(SIGTERM, onSignal);
   std::signal(SIGINT, onSignal);
+  std::signal(SIGHUP, onSignal);
   try {
     app.parse(argc, argv);
     run(options);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);
-  } catch (const InputError& e) {
-    fmt::print(stderr, "tautline-station: error: {}\n", e.what());
-    return static_cast<int>(e.code());
+  } catch (...) {
+    return reportException("tautline-station");
   }
   return 0;
 }

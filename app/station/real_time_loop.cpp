@@ -10,8 +10,8 @@ constexpr int kParamsEvery = 10;  // statistics periods
 
 }  // namespace
 
-LoopSummary realTimeLoop(const LoopParts& parts, Duration period,
-                         const volatile std::sig_atomic_t& stop) {
+LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
+                                      const volatile std::sig_atomic_t& stop) {
   LoopStatistics statistics;
   StepInput in;
   TickGrid grid(period, monotonicNow() + period);
@@ -32,14 +32,15 @@ LoopSummary realTimeLoop(const LoopParts& parts, Duration period,
     parts.telemetry.publish(in, out);
 
     if (in.now >= next_statistics) {
-      next_statistics = in.now + kStatisticsPeriod;
+      next_statistics += kStatisticsPeriod;
       parts.telemetry.publishLoop(in.now, period, statistics.snapshot(),
                                   parts.station.commandsRefused());
       statistics.startWindow();
-      if (until_params-- == 0) {
+      if (until_params == 0) {
         parts.telemetry.publishParams(in.now);
         until_params = kParamsEvery;
       }
+      --until_params;
     }
 
     const Time done = monotonicNow();
@@ -49,7 +50,7 @@ LoopSummary realTimeLoop(const LoopParts& parts, Duration period,
       parts.black_box->record(makeRecord(in, out, lateness, done - in.now));
   }
   parts.device.shutdown(monotonicNow());
-  return {statistics.snapshot()};
+  return statistics.snapshot();
 }
 
 }  // namespace tautline

@@ -22,13 +22,9 @@ struct LoopParts {
   BlackBox* black_box;  ///< May be null.
 };
 
-struct LoopSummary {
-  LoopStatistics::Snapshot statistics;
-};
-
 /// Runs until `stop` is set, then sends the device's last words. Real-time safe after the first
 /// cycle: no allocation, no locks, no exceptions of ours; LCM's publish takes its own short lock.
-LoopSummary realTimeLoop(const LoopParts& parts, Duration period,
-                         const volatile std::sig_atomic_t& stop);
+LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
+                                      const volatile std::sig_atomic_t& stop);
 
 }  // namespace tautline

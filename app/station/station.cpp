@@ -3,8 +3,6 @@
 namespace tautline {
 namespace {
 
-bool isUsable(const Estimate& e) noexcept { return e.valid && e.health != EstimateHealth::kLost; }
-
 /// A condition that an operator hears of when it comes and when it goes.
 struct ToldCondition {
   Condition condition;
@@ -13,6 +11,8 @@ struct ToldCondition {
 };
 constexpr std::array kToldConditions{
     ToldCondition{Condition::kReelStale, EventCode::kSensorsStale, EventCode::kSensorsBack},
+    ToldCondition{Condition::kAnglesStale, EventCode::kSensorsStale, EventCode::kSensorsBack},
+    ToldCondition{Condition::kVehicleStale, EventCode::kVehicleStale, EventCode::kVehicleBack},
     ToldCondition{Condition::kLinkLost, EventCode::kLinkLost, EventCode::kLinkBack},
     ToldCondition{Condition::kLocalizationLost, EventCode::kLocalizationLost,
                   EventCode::kLocalizationBack},
@@ -70,15 +70,14 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   // Fly: where to, how, and the last gate.  Critical for safety: nothing may come between the gate
   // and the override.
   const MissionState mission_before = guidance_.mission().state;
-  const GuidanceOutput guidance =
-      guidance_.update({.now = in.now,
-                        .dt = dt,
-                        .mode = out_.supervision.mode,
-                        .entered = out_.supervision.changed,
-                        .estimate = out_.estimate,
-                        .vehicle_flying = out_.conditions.has(Condition::kVehicleFlying),
-                        .sensors = &in.sensors,
-                        .plan = missions_.active()});
+  const GuidanceOutput guidance = guidance_.update({.now = in.now,
+                                                    .dt = dt,
+                                                    .mode = out_.supervision.mode,
+                                                    .entered = out_.supervision.changed,
+                                                    .estimate = out_.estimate,
+                                                    .vehicle = in.sensors.vehicle.value.phase,
+                                                    .sensors = &in.sensors,
+                                                    .plan = missions_.active()});
   const VehicleCommand wanted = control(dt, guidance);
   const VehicleCommand gated = gate_.apply(dt, wanted).command;
   out_.command = override(gated);
@@ -104,13 +103,16 @@ ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noex
   set.set(Condition::kAttitudeStale, unusable(SensorStream::kAttitude));
   set.set(Condition::kVehicleStale, unusable(SensorStream::kVehicle));
   set.set(Condition::kLinkLost, !f.link.connected);
-  set.set(Condition::kLocalizationLost, !isUsable(estimate));
+  set.set(Condition::kLocalizationLost, !estimate.usable());
   set.set(Condition::kVehicleFault,
           f.vehicle.sequence > 0 && f.vehicle.value.phase == VehiclePhase::kFault);
   set.set(Condition::kVehicleFlying,
           f.vehicle.sequence > 0 && (f.vehicle.value.phase == VehiclePhase::kFlying ||
                                      f.vehicle.value.phase == VehiclePhase::kLanding));
-  set.set(Condition::kMissionLoaded, missions_.loaded() != nullptr);
+  const MissionPlan* waiting = missions_.loaded();
+  set.set(Condition::kMissionLoaded, waiting != nullptr);
+  set.set(Condition::kTetherElsewhere,
+          waiting != nullptr && !guidance_.startsWithPresentTether(*waiting));
   set.set(Condition::kOverruns, in.consecutive_overruns >= config_.overruns_in_a_row);
   return set;
 }
@@ -130,8 +132,9 @@ Request Station::takeCommand(const StepInput& in) noexcept {
     return Request::kNone;
   }
   // A command that is sent again because its answer was lost must not act twice.
-  if (last_acknowledged_.session == c.session && last_acknowledged_.sequence == c.sequence) {
-    out_.ack = last_acknowledged_;
+  for (const CommandAck& answered : answered_) {
+    if (answered.session != c.session || answered.sequence != c.sequence) continue;
+    out_.ack = answered;
     return Request::kNone;
   }
   if (c.request == Request::kNavigate &&
@@ -151,7 +154,8 @@ void Station::acknowledge(const OperatorCommand& command) noexcept {
 void Station::answer(std::int64_t session, std::int32_t sequence, AckResult result,
                      ConditionSet reasons) noexcept {
   out_.ack = CommandAck{session, sequence, result, reasons, 0};
-  last_acknowledged_ = *out_.ack;
+  answered_[next_answer_] = *out_.ack;
+  next_answer_ = (next_answer_ + 1) % answered_.size();
   if (result != AckResult::kAccepted) ++commands_refused_;
 }
 

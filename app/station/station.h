@@ -6,6 +6,7 @@
 /// and LCM, app/bench puts the plant; the same input gives the same output, always.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -89,7 +90,9 @@ class Station {
   std::optional<Time> last_step_;
   VehicleCommand last_command_;
   StepOutput out_;
-  CommandAck last_acknowledged_;
+  std::array<CommandAck, 16>
+      answered_{};  ///< The last ones, so that a command sent again acts once.
+  std::size_t next_answer_{0};
   std::int64_t commands_refused_{0};
 };
 

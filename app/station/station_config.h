@@ -4,6 +4,8 @@
 /// Everything that can be set on the station, in one file (config/station.toml); each part
 /// documents its own fields.
 
+#include <array>
+#include <cstdint>
 #include <string>
 
 #include <Eigen/Core>

@@ -1,5 +1,6 @@
 #include "app/station/telemetry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lcmtypes/channels.h"
@@ -78,7 +79,7 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
     sendStation(in.now, out);
   }
   if (!due) return;
-  next_state_ = in.now + state_period_;
+  next_state_ = std::max(next_state_ + state_period_, in.now);  // on a grid, without catching up
   sendTether(in, out);
   sendVehicle(in);
   sendEstimate(in.now, out);

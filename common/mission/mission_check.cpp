@@ -366,4 +366,11 @@ double cutDepth(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Scene&
   return deepest;
 }
 
+std::optional<Scene> findScene(const Mission& mission, const std::filesystem::path& mission_file,
+                               const std::string& scene_file) {
+  if (!scene_file.empty()) return readScene(scene_file);
+  if (!mission.map.ends_with(".scene.toml")) return std::nullopt;
+  return readScene((mission_file.parent_path() / mission.map).lexically_normal());
+}
+
 }  // namespace tautline

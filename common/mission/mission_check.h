@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,6 +73,13 @@ struct MissionLimits {
             "nearer to the vertical above the anchor is a pole crossing");
   }
 };
+
+/// The scene that belongs to a mission: the file given, else the mission's own map if that is a
+/// scene (relative to the mission file's folder), else nothing. Throws InputError if it cannot be
+/// read.
+[[nodiscard]] std::optional<Scene> findScene(const Mission& mission,
+                                             const std::filesystem::path& mission_file,
+                                             const std::string& scene_file = "");
 
 /// All findings in the order of the rows. Without a scene the floor is at W height -reel_position.y
 /// and there are no obstacles. `scene` is in M, as read from its file.
