@@ -13,6 +13,7 @@
 #include <tautline/mission_chunk_t.hpp>
 #include <tautline/params_t.hpp>
 
+#include "app/station/input_message.h"
 #include "app/station/telemetry.h"
 #include "common/error.h"
 #include "common/toml/config_file.h"
@@ -20,19 +21,6 @@
 
 namespace tautline::bench {
 namespace {
-
-Time timeOf(std::int64_t ns) noexcept { return Time(Duration(ns)); }
-
-template <class T>
-void fill(Sample<T>& sample, std::int64_t time_ns, std::int32_t sequence, bool valid) noexcept {
-  sample.time = timeOf(time_ns);
-  sample.sequence = static_cast<std::uint32_t>(sequence);
-  sample.valid = valid;
-}
-
-std::optional<double> optional(bool has, double value) noexcept {
-  return has ? std::optional(value) : std::nullopt;
-}
 
 /// A COMMAND without its hash and utime: what was commanded.
 std::vector<std::uint8_t> payloadOf(std::span<const std::uint8_t> bytes) {
@@ -99,41 +87,6 @@ Contents readLog(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-StepInput inputOf(const tautline::station_input_t& m) noexcept {
-  StepInput in;
-  in.now = timeOf(m.now_ns);
-  in.consecutive_overruns = m.loop_overruns;
-  if (m.has_command) {
-    in.command =
-        OperatorCommand{m.command_session, m.command_sequence, static_cast<Request>(m.command_verb),
-                        static_cast<std::uint64_t>(m.command_mission_hash)};
-  }
-  SensorFrame& f = in.sensors;
-  fill(f.reel, m.reel_time_ns, m.reel_sequence, m.reel_valid);
-  f.reel.value = {m.reel_counts, m.reel_length_m, optional(m.reel_has_tension, m.reel_tension_n)};
-  fill(f.angles, m.angles_time_ns, m.angles_sequence, m.angles_valid);
-  f.angles.value = {m.elevation_rad, m.azimuth_rad, optional(m.has_altitude, m.altitude_m)};
-  fill(f.attitude, m.attitude_time_ns, m.attitude_sequence, m.attitude_valid);
-  const double(&q)[4] = m.attitude_wxyz;
-  f.attitude.value.R_WB = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-  fill(f.gimbal, m.gimbal_time_ns, m.gimbal_sequence, m.gimbal_valid);
-  f.gimbal.value.pitch = m.gimbal_pitch_rad;
-  fill(f.vehicle, m.vehicle_time_ns, m.vehicle_sequence, m.vehicle_valid);
-  f.vehicle.value = {static_cast<VehiclePhase>(m.vehicle_phase),
-                     static_cast<std::uint8_t>(m.flight_mode),
-                     static_cast<std::uint16_t>(m.vehicle_flags), m.backup_battery_v};
-  fill(f.ground, m.ground_time_ns, m.ground_sequence, m.ground_valid);
-  f.ground.value = {static_cast<std::uint8_t>(m.ground_mode), m.ground_battery_v};
-  f.link = {m.link_connected != 0,
-            static_cast<std::uint64_t>(m.link_bytes_in),
-            static_cast<std::uint64_t>(m.link_bytes_out),
-            static_cast<std::uint32_t>(m.link_lines_ok),
-            static_cast<std::uint32_t>(m.link_lines_bad),
-            static_cast<std::uint32_t>(m.link_bytes_dropped),
-            static_cast<std::uint32_t>(m.link_reconnects)};
-  return in;
-}
 
 ReplayResult replay(const std::filesystem::path& path) {
   const Contents log = readLog(path);

@@ -9,14 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include <tautline/station_input_t.hpp>
-
-#include "app/station/station.h"
-
 namespace tautline::bench {
-
-/// The input of a cycle as it was logged, without the piece of a mission that may belong to it.
-[[nodiscard]] StepInput inputOf(const tautline::station_input_t& message) noexcept;
 
 struct ReplayResult {
   std::int64_t cycles{0};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/station/input_message.h"
 #include "lcmtypes/channels.h"
 
 namespace tautline {
@@ -12,21 +13,9 @@ void put(double (&out)[3], const Eigen::Vector3d& v) noexcept {
   for (int i = 0; i < 3; ++i) out[i] = v[i];
 }
 
-void put(double (&wxyz)[4], const Eigen::Quaterniond& q) noexcept {
-  wxyz[0] = q.w();
-  wxyz[1] = q.x();
-  wxyz[2] = q.y();
-  wxyz[3] = q.z();
-}
-
 template <class T>
 double ageOf(const Sample<T>& sample, Time now) noexcept {
   return sample.sequence == 0 ? -1.0 : toSeconds(now - sample.time);
-}
-
-template <class T>
-std::int64_t timeOf(const Sample<T>& sample) noexcept {
-  return sample.time.time_since_epoch().count();
 }
 
 /// Heading of the body about +y.
@@ -86,67 +75,7 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
 }
 
 void Telemetry::sendInput(const StepInput& in) noexcept {
-  const SensorFrame& f = in.sensors;
-  tautline::station_input_t m{};
-  m.now_ns = in.now.time_since_epoch().count();
-  m.has_command = in.command ? 1 : 0;
-  if (in.command) {
-    m.command_session = in.command->session;
-    m.command_sequence = in.command->sequence;
-    m.command_verb = as<std::int8_t>(in.command->request);
-    m.command_mission_hash = as<std::int64_t>(in.command->mission_hash);
-  }
-  m.chunk_session = in.chunk != nullptr ? in.chunk->session : 0;
-  m.chunk_sequence = in.chunk != nullptr ? in.chunk->sequence : 0;
-  m.loop_overruns = in.consecutive_overruns;
-
-  m.reel_time_ns = timeOf(f.reel);
-  m.reel_sequence = as<std::int32_t>(f.reel.sequence);
-  m.reel_valid = f.reel.valid;
-  m.reel_counts = f.reel.value.counts;
-  m.reel_length_m = f.reel.value.length;
-  m.reel_has_tension = f.reel.value.tension.has_value();
-  m.reel_tension_n = f.reel.value.tension.value_or(0.0);
-
-  m.angles_time_ns = timeOf(f.angles);
-  m.angles_sequence = as<std::int32_t>(f.angles.sequence);
-  m.angles_valid = f.angles.valid;
-  m.elevation_rad = f.angles.value.theta;
-  m.azimuth_rad = f.angles.value.phi;
-  m.has_altitude = f.angles.value.altitude.has_value();
-  m.altitude_m = f.angles.value.altitude.value_or(0.0);
-
-  m.attitude_time_ns = timeOf(f.attitude);
-  m.attitude_sequence = as<std::int32_t>(f.attitude.sequence);
-  m.attitude_valid = f.attitude.valid;
-  put(m.attitude_wxyz, f.attitude.value.R_WB);
-
-  m.gimbal_time_ns = timeOf(f.gimbal);
-  m.gimbal_sequence = as<std::int32_t>(f.gimbal.sequence);
-  m.gimbal_valid = f.gimbal.valid;
-  m.gimbal_pitch_rad = f.gimbal.value.pitch;
-
-  m.vehicle_time_ns = timeOf(f.vehicle);
-  m.vehicle_sequence = as<std::int32_t>(f.vehicle.sequence);
-  m.vehicle_valid = f.vehicle.valid;
-  m.vehicle_phase = as<std::int8_t>(f.vehicle.value.phase);
-  m.flight_mode = f.vehicle.value.flight_mode;
-  m.vehicle_flags = f.vehicle.value.flags;
-  m.backup_battery_v = f.vehicle.value.backup_battery_voltage;
-
-  m.ground_time_ns = timeOf(f.ground);
-  m.ground_sequence = as<std::int32_t>(f.ground.sequence);
-  m.ground_valid = f.ground.valid;
-  m.ground_mode = f.ground.value.mode;
-  m.ground_battery_v = f.ground.value.battery_voltage;
-
-  m.link_connected = f.link.connected;
-  m.link_bytes_in = as<std::int64_t>(f.link.bytes_in);
-  m.link_bytes_out = as<std::int64_t>(f.link.bytes_out);
-  m.link_lines_ok = as<std::int32_t>(f.link.lines_ok);
-  m.link_lines_bad = as<std::int32_t>(f.link.lines_bad);
-  m.link_bytes_dropped = as<std::int32_t>(f.link.bytes_dropped);
-  m.link_reconnects = as<std::int32_t>(f.link.reconnects);
+  tautline::station_input_t m = messageOf(in);
   send(channel::kStationInput, m, in.now);
 }
 
@@ -197,13 +126,7 @@ void Telemetry::sendVehicle(const StepInput& in) noexcept {
   m.ground_battery_v = f.ground.value.battery_voltage;
   m.backup_battery_v = f.vehicle.value.backup_battery_voltage;
   m.status_age_s = ageOf(f.vehicle, in.now);
-  m.link_connected = f.link.connected;
-  m.link_bytes_in = as<std::int64_t>(f.link.bytes_in);
-  m.link_bytes_out = as<std::int64_t>(f.link.bytes_out);
-  m.link_lines_ok = as<std::int32_t>(f.link.lines_ok);
-  m.link_lines_bad = as<std::int32_t>(f.link.lines_bad);
-  m.link_bytes_dropped = as<std::int32_t>(f.link.bytes_dropped);
-  m.link_reconnects = as<std::int32_t>(f.link.reconnects);
+  putLink(m, f.link);
   send(channel::kVehicleState, m, in.now);
 }
 
