@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/report/views.h"
+#include "common/mission/mission_check.h"
 #include "common/mission/mission_file.h"
 #include "common/mission/scene.h"
 
@@ -95,7 +96,9 @@ Drawing missionDrawing(const Mission& mission) {
 ExitCode run(const Options& options) {
   const Mission mission = readMission(options.mission);
   Drawing drawing;
-  if (!options.scene.empty()) addScene(drawing, sceneInWorld(readScene(options.scene)));
+  if (const auto scene = findScene(mission, options.mission, options.scene)) {
+    addScene(drawing, sceneInWorld(*scene));
+  }
   Drawing plan = missionDrawing(mission);
   drawing.title = plan.title;
   drawing.curves.insert(drawing.curves.end(), plan.curves.begin(), plan.curves.end());
@@ -112,14 +115,14 @@ void addMissionSvgCommand(CLI::App& mission, ExitCode& result) {
   CLI::App* verb =
       mission.add_subcommand("svg", "Draw a mission from above, from the front and from the side");
   verb->add_option("file", options->mission, "Mission file")->required()->type_name("FILE");
-  verb->add_option("--scene", options->scene, "Scene whose obstacles are drawn")
+  verb->add_option("--scene", options->scene,
+                   "Scene whose obstacles are drawn, instead of the mission's own map")
       ->type_name("SCENE");
   verb->add_option("-o,--output", options->picture, "Picture to write")
       ->required()
       ->type_name("OUT.svg");
   verb->footer(
-      "Example:\n  tautline mission svg config/missions/one_contact.mission.toml --scene "
-      "config/scenes/one_contact.scene.toml -o one_contact.svg");
+      "Example: tautline mission svg config/missions/one_contact.mission.toml -o one_contact.svg");
   verb->callback([options, &result] { result = run(*options); });
 }
 
