@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Lockstep, CrossesThePoleWithEverySeed) {
   for (const char* name : {"path2_0.2", "path2_0.5", "path2_1", "path2_1.5", "path2_3"}) {
     const Mission path = mission(name);
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       Lockstep bench(benchConfig("open", seed), nullptr);
       const FlightResult r = flyMission(bench, *path.plan, seconds(180));
       EXPECT_TRUE(r.completed && r.landed) << name << " seed " << seed;
