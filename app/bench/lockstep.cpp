@@ -34,16 +34,17 @@ StationConfig forBench(const LockstepConfig& config) {
 }  // namespace
 
 Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
-    : period_(fromSeconds(1.0 / config.station.loop_rate_hz)),
+    : config_(forBench(config)),
+      period_(fromSeconds(1.0 / config_.loop_rate_hz)),
       simulator_(config.sim, config.world, config.seed),
       port_(simulator_),
-      device_(port_, forBench(config).fotokite),
-      station_(forBench(config).core),
+      device_(port_, config_.fotokite),
+      station_(config_.core),
       sink_(sink) {
   if (sink_ == nullptr) return;
-  telemetry_ = std::make_unique<Telemetry>(*sink_, RunMode::kSim, Duration::zero(),
-                                           fromSeconds(1.0 / config.station.telemetry_rate_hz));
-  telemetry_->setParams("tautline-bench", kVersion, dumpConfig(forBench(config)));
+  telemetry_ = std::make_unique<Telemetry>(*sink_, config_.run_mode, Duration::zero(),
+                                           fromSeconds(1.0 / config_.telemetry_rate_hz));
+  telemetry_->setParams("tautline-bench", kVersion, dumpConfig(config_));
   telemetry_->publishParams(now_);
 }
 

@@ -52,6 +52,7 @@ class Lockstep {
   void recordOperator() noexcept;
   void recordTruth() noexcept;
 
+  StationConfig config_;  ///< Effective: mode and home are the bench's.
   Duration period_;
   sim::Simulator simulator_;
   MemoryPort port_;
