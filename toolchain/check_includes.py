@@ -29,6 +29,7 @@ ONLY_IN = {
     "tautline": ["app", "sim_hil"],
     "CLI": ["app", "sim_hil", "planning_offline"],
     "octomap": ["planning_offline"],
+    "dynamicEDT3D": ["planning_offline/field/benchmark"],
     "ompl": ["planning_offline"],
     "nlohmann": ["app", "planning_offline", "sim_hil"],
     "fmt": ["app", "planning_offline", "sim_hil"],

@@ -1,0 +1,54 @@
+#pragma once
+
+/// @file
+/// Least-cost walks from the start to every cell over directional components (the dissertation's
+/// Algorithm 2): the state is cell × incoming direction, the costs are those of locale and action
+/// elements. Not real-time safe: offline only.
+
+#include <memory>
+#include <vector>
+
+#include "planning_offline/progress.h"
+#include "planning_offline/risk/risk_model.h"
+#include "planning_offline/search/lattice.h"
+
+namespace tautline::planning {
+
+/// What the searches found. Costs include the start's own (RiskModel::startCost()).
+class LeastRiskTree {
+ public:
+  virtual ~LeastRiskTree() = default;
+
+  /// Cost −log(1 − risk) of the best walk to a cell; infinite if there is none.
+  [[nodiscard]] virtual double costTo(CellIndex cell) const = 0;
+
+  /// That walk, start first; empty if there is none. Ties are broken the same way every time.
+  [[nodiscard]] virtual std::vector<CellIndex> pathTo(CellIndex cell) const = 0;
+
+  /// How far costTo() may be above the true least cost; 0 for exact arithmetic.
+  [[nodiscard]] virtual double costError() const = 0;
+
+  [[nodiscard]] virtual std::size_t expanded() const = 0;
+  [[nodiscard]] virtual bool complete() const = 0;  ///< False if cancelled.
+};
+
+/// Simple and exact: a binary heap of (cell, direction) labels in double. The yardstick of the fast
+/// one.
+[[nodiscard]] std::unique_ptr<LeastRiskTree> leastRiskTreeReference(const Lattice& lattice,
+                                                                    const RiskModel& risk,
+                                                                    CellIndex start,
+                                                                    const Progress& progress);
+
+/// The same in integer units for large maps: docs/planning.md, "The fast search". `threads` 0 = all
+/// cores.
+[[nodiscard]] std::unique_ptr<LeastRiskTree> leastRiskTreeFast(const Lattice& lattice,
+                                                               const RiskModel& risk,
+                                                               CellIndex start, int threads,
+                                                               const Progress& progress);
+
+/// The one to use: exact arithmetic up to a few hundred thousand components, the fast one above.
+[[nodiscard]] std::unique_ptr<LeastRiskTree> leastRiskTree(const Lattice& lattice,
+                                                           const RiskModel& risk, CellIndex start,
+                                                           int threads, const Progress& progress);
+
+}  // namespace tautline::planning
