@@ -16,7 +16,7 @@
 #include "common/fields.h"
 #include "planning_offline/progress.h"
 #include "planning_offline/risk/risk_model.h"
-#include "planning_offline/search/lattice.h"
+#include "planning_offline/map/lattice.h"
 
 namespace tautline::planning {
 

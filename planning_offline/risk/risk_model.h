@@ -16,7 +16,7 @@
 #include "planning_offline/risk/risk_element.h"
 #include "planning_offline/risk/risk_params.h"
 #include "planning_offline/risk/risk_report.h"
-#include "planning_offline/search/lattice.h"
+#include "planning_offline/map/lattice.h"
 #include "planning_offline/tether/taut_string.h"
 
 namespace tautline::planning {

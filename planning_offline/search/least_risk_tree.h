@@ -10,7 +10,7 @@
 
 #include "planning_offline/progress.h"
 #include "planning_offline/risk/risk_model.h"
-#include "planning_offline/search/lattice.h"
+#include "planning_offline/map/lattice.h"
 
 namespace tautline::planning {
 

@@ -1,4 +1,4 @@
-#include "planning_offline/search/lattice.h"
+#include "planning_offline/map/lattice.h"
 
 #include <cmath>
 #include <utility>
