@@ -6,19 +6,19 @@
 #include <optional>
 #include <string>
 
-#include "app/report/views.h"
 #include "common/mission/mission_check.h"
 #include "common/mission/mission_file.h"
 #include "common/mission/scene.h"
+#include "common/plot/views.h"
 
 namespace tautline::cli {
 namespace {
 
 using plot::Colour;
+using plot::Drawing;
+using plot::SpaceCurve;
 using plot::Style;
 using plot::Symbol;
-using report::Drawing;
-using report::SpaceCurve;
 
 struct Options {
   std::string mission;

@@ -214,8 +214,8 @@ std::vector<Eigen::Vector3d> plannedPath(const FlightAnalysis& flight) {
 
 }  // namespace
 
-Drawing flightDrawing(const FlightAnalysis& flight) {
-  Drawing drawing;
+plot::Drawing flightDrawing(const FlightAnalysis& flight) {
+  plot::Drawing drawing;
   const auto planned = plannedPath(flight);
   if (!planned.empty()) {
     drawing.curves.push_back({.name = "planned",
@@ -287,14 +287,14 @@ std::vector<NamedFigure> reportFigures(const FlightLog& log, const FlightAnalysi
                                        const Scene* scene) {
   std::vector<NamedFigure> out;
   if (!flight.position.empty() || !flight.cross_track.segments.empty()) {
-    Drawing drawing;
+    plot::Drawing drawing;
     if (scene != nullptr) addScene(drawing, *scene);
-    const Drawing paths = flightDrawing(flight);
+    const plot::Drawing paths = flightDrawing(flight);
     drawing.curves.insert(drawing.curves.end(), paths.curves.begin(), paths.curves.end());
     drawing.markers = paths.markers;
     out.push_back({"views", "Planned and flown path from above, from the front and from the side.",
                    true, viewsFigure(drawing)});
-    for (const auto& view : kViewNames) {
+    for (const auto& view : plot::kViewNames) {
       out.push_back({view.name, std::string("Planned and flown path, ") + view.name + " view.",
                      false, viewFigure(drawing, view.value)});
     }

@@ -8,8 +8,8 @@
 
 #include "app/report/analysis.h"
 #include "app/report/flight_log.h"
-#include "app/report/views.h"
 #include "common/plot/figure.h"
+#include "common/plot/views.h"
 
 namespace tautline::report {
 
@@ -21,7 +21,7 @@ struct NamedFigure {
 };
 
 /// Paths, contacts and landmarks of the flight in space, without obstacles.
-[[nodiscard]] Drawing flightDrawing(const FlightAnalysis& flight);
+[[nodiscard]] plot::Drawing flightDrawing(const FlightAnalysis& flight);
 
 /// All pictures; `scene` (in W) is drawn into the views where given. A picture without any data is
 /// left out.

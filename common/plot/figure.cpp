@@ -90,9 +90,9 @@ const char* pointType(Symbol symbol) {
 }
 
 // "with …" of one series, without its title.
-std::string lineStyle(const Series& series) {
-  const std::string colour =
-      series.values.empty() ? " lc rgb " + rgb(series.colour) : " lc palette";
+std::string lineStyle(const Series& series, bool in_legend = false) {
+  const std::string by_value = in_legend ? " lc palette frac 0.6" : " lc palette";
+  const std::string colour = series.values.empty() ? " lc rgb " + rgb(series.colour) : by_value;
   const std::string line = " lw " + number(series.width) + colour;
   const std::string point = " pt " + std::string(pointType(series.symbol));
   switch (series.style) {
@@ -166,6 +166,10 @@ struct PanelLimits {
 PanelLimits limitsOf(const Figure& figure, const Panel& panel) {
   Extent x;
   Extent y;
+  for (const auto& r : panel.rasters) {
+    include({r.x_min, r.y_min}, panel, x, y);
+    include({r.x_min + r.columns * r.pixel_width, r.y_min + r.rows * r.pixel_height}, panel, x, y);
+  }
   for (const auto& polygon : panel.polygons) {
     for (const auto& p : polygon.outline) include(p, panel, x, y);
   }
@@ -210,6 +214,9 @@ class PanelScript {
         panel_(panel),
         prefix_("$panel" + std::to_string(index)),
         limits_(limitsOf(figure, panel)) {
+    if (!panel.legend_only) {
+      for (const auto& raster : panel.rasters) addRaster(raster);
+    }
     for (const auto& polygon : panel.polygons) addPolygon(polygon);
     for (const auto& series : panel.series) addSeries(series);
     for (const auto& marker : panel.markers) addMarker(marker);
@@ -238,6 +245,24 @@ class PanelScript {
     const bool listed = panel_.legend && !name.empty();
     curves_.push_back(block(rows) + " using " + columns + " " + style +
                       (listed ? " title " + inQuotes(name) : " notitle"));
+  }
+
+  void addRaster(const Raster& raster) {
+    std::string rows;
+    std::size_t at = 0;
+    for (int row = 0; row < raster.rows; ++row) {
+      const std::string y = " " + number(raster.y_min + (row + 0.5) * raster.pixel_height);
+      for (int column = 0; column < raster.columns; ++column) {
+        rows += number(raster.x_min + (column + 0.5) * raster.pixel_width) + y;
+        for (const std::uint8_t part : raster.pixels[at]) rows += " " + std::to_string(part);
+        rows += "\n";
+        ++at;
+      }
+    }
+    // Few pixels are drawn as rectangles, for viewers smooth images; many as one embedded image.
+    constexpr std::size_t kMostRectangles = 6000;
+    addCurve(rows, "1:2:3:4:5", at <= kMostRectangles ? "with rgbimage pixels" : "with rgbimage",
+             {});
   }
 
   void addPolygon(const Polygon& polygon) {
@@ -272,7 +297,8 @@ class PanelScript {
     }
     if (rows.find_first_not_of('\n') == std::string::npos) rows.clear();
     has_values_ = has_values_ || !series.values.empty();
-    addCurve(rows, series.values.empty() ? "1:2" : "1:2:3", lineStyle(series), series.name);
+    addCurve(rows, series.values.empty() ? "1:2" : "1:2:3",
+             lineStyle(series, panel_.legend_only || rows.empty()), series.name);
   }
 
   void addMarker(const Marker& marker) {
@@ -325,8 +351,15 @@ class PanelScript {
     out += panel_.legend ? "set key outside bottom center horizontal Left reverse samplen 2 "
                            "spacing 1.1 width 1\n"
                          : "unset key\n";
-    out += has_values_ ? "set colorbox\nset cblabel " + inQuotes(panel_.value_label) + "\n"
-                       : "unset colorbox\n";
+    if (has_values_ || panel_.value_limits) {
+      out += "set colorbox\nset cblabel " + inQuotes(panel_.value_label) + "\nset cbrange " +
+             (panel_.value_limits ? "[" + number(panel_.value_limits->min) + ":" +
+                                        number(panel_.value_limits->max) + "]"
+                                  : "[*:*]") +
+             "\n";
+    } else {
+      out += "unset colorbox\n";
+    }
     if (panel_.x.logarithmic) out += "set logscale x\n";
     if (panel_.y.logarithmic) out += "set logscale y\n";
     out += "set xrange " + rangeText(panel_.x, limits_.x) + "\nset yrange " +
@@ -361,8 +394,8 @@ class PanelScript {
 };
 
 bool isBlank(const Panel& panel) {
-  return panel.polygons.empty() && panel.series.empty() && panel.markers.empty() &&
-         panel.title.empty();
+  return panel.rasters.empty() && panel.polygons.empty() && panel.series.empty() &&
+         panel.markers.empty() && panel.title.empty();
 }
 
 }  // namespace
@@ -372,8 +405,7 @@ std::string gnuplotScript(const Figure& figure) {
                     std::to_string(figure.height_px) +
                     " fixed noenhanced font 'sans-serif,12' background '#ffffff'\n";
   out += "set encoding utf8\nset format '%g'\nset clip two\n";
-  // Viridis, abridged: even steps of lightness, readable in grey.
-  out += "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n";
+  out += "set palette defined (" + viridisPalette() + ")\n";
   out +=
       "set multiplot layout " + std::to_string(figure.rows) + "," + std::to_string(figure.columns);
   if (!figure.title.empty()) out += " title " + inQuotes(figure.title) + " font ',14'";

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "common/plot/raster.h"
+
 namespace tautline::plot {
 
 /// The palette of Okabe and Ito, told apart by people with every kind of colour vision.
@@ -77,7 +79,7 @@ struct Axis {
   bool logarithmic{false};         ///< Points that are not positive are left out.
 };
 
-/// One coordinate system. Drawn in this order: polygons, series, markers.
+/// One coordinate system. Drawn in this order: rasters, polygons, series, markers.
 struct Panel {
   std::string title{};
   Axis x{};
@@ -87,7 +89,9 @@ struct Panel {
   bool legend{true};
   bool legend_only{
       false};  ///< Shows nothing but the legend, large: one for all panels of a figure.
-  std::string value_label{};  ///< Of the colour bar of series with values.
+  std::string value_label{};             ///< Of the colour bar of series with values.
+  std::optional<Limits> value_limits{};  ///< Of that colour bar; absent: from the values.
+  std::vector<Raster> rasters{};
   std::vector<Polygon> polygons{};
   std::vector<Series> series{};
   std::vector<Marker> markers{};

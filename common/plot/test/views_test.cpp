@@ -1,4 +1,4 @@
-#include "app/report/views.h"
+#include "common/plot/views.h"
 
 #include <algorithm>
 #include <utility>
@@ -6,11 +6,11 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace tautline::report {
+namespace tautline::plot {
 namespace {
 
-std::pair<plot::Point, plot::Point> corners(const plot::Polygon& polygon) {
-  std::pair<plot::Point, plot::Point> out{polygon.outline.front(), polygon.outline.front()};
+std::pair<Point, Point> corners(const Polygon& polygon) {
+  std::pair<Point, Point> out{polygon.outline.front(), polygon.outline.front()};
   for (const auto& p : polygon.outline) {
     out.first = {std::min(out.first.x, p.x), std::min(out.first.y, p.y)};
     out.second = {std::max(out.second.x, p.x), std::max(out.second.y, p.y)};
@@ -26,7 +26,7 @@ TEST(Views, ABoxAndAPrismOfTheSameSizeLookAlike) {
   const double expected[3][4] = {
       {1, -3, 2, -1}, {1, 0, 2, 5}, {-3, 0, -1, 5}};  // top x z, front x y, side z y
   for (const auto& view : kViewNames) {
-    const plot::Panel panel = viewPanel(drawing, view.value);
+    const Panel panel = viewPanel(drawing, view.value);
     ASSERT_EQ(panel.polygons.size(), 2U);
     EXPECT_TRUE(panel.equal_aspect);
     for (const auto& polygon : panel.polygons) {
@@ -45,11 +45,11 @@ TEST(Views, ABoxAndAPrismOfTheSameSizeLookAlike) {
 TEST(Views, NoViewIsMirrored) {
   const Eigen::Vector3d viewer[3] = {{0, 1, 0}, {0, 0, 1}, {-1, 0, 0}};
   for (const auto& view : kViewNames) {
-    const plot::Panel panel = viewPanel({}, view.value);
+    const Panel panel = viewPanel({}, view.value);
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     Eigen::Vector3d up = Eigen::Vector3d::Zero();
     for (int axis = 0; axis < 3; ++axis) {
-      const plot::Point p = project(view.value, Eigen::Vector3d::Unit(axis));
+      const Point p = project(view.value, Eigen::Vector3d::Unit(axis));
       right[axis] = panel.x.reversed ? -p.x : p.x;
       up[axis] = panel.y.reversed ? -p.y : p.y;
     }
@@ -60,9 +60,9 @@ TEST(Views, NoViewIsMirrored) {
 TEST(Views, AllThreeHaveOneScale) {
   Drawing drawing;
   drawing.curves.push_back({.name = "path", .points = {{0, 0, 0}, {8, 1, 2}, {-1, 3, 0}}});
-  const plot::Figure figure = viewsFigure(drawing);
+  const Figure figure = viewsFigure(drawing);
   ASSERT_EQ(figure.panels.size(), 4U);
-  const auto span = [](const plot::Axis& axis) { return axis.limits->max - axis.limits->min; };
+  const auto span = [](const Axis& axis) { return axis.limits->max - axis.limits->min; };
   const auto &top = figure.panels[0], &front = figure.panels[2], &side = figure.panels[3];
   EXPECT_NEAR(span(top.x), span(front.x), 1e-12);
   EXPECT_NEAR(span(front.x), span(side.x), 1e-12);
@@ -77,4 +77,4 @@ TEST(Views, AllThreeHaveOneScale) {
 }
 
 }  // namespace
-}  // namespace tautline::report
+}  // namespace tautline::plot

@@ -1,12 +1,10 @@
-#include "app/report/views.h"
+#include "common/plot/views.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace tautline::report {
+namespace tautline::plot {
 namespace {
-
-using plot::Colour;
 
 struct Bounds {
   Eigen::Vector3d min{Eigen::Vector3d::Constant(std::numeric_limits<double>::max())};
@@ -19,14 +17,14 @@ struct Bounds {
   }
 };
 
-plot::Polygon rectangle(View view, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
-  const plot::Point a = project(view, min);
-  const plot::Point b = project(view, max);
+Polygon rectangle(View view, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
+  const Point a = project(view, min);
+  const Point b = project(view, max);
   return {.outline = {a, {b.x, a.y}, b, {a.x, b.y}}};
 }
 
-plot::Polygon outline(View view, const Prism& prism) {
-  plot::Polygon out;
+Polygon outline(View view, const Prism& prism) {
+  Polygon out;
   Bounds bounds;
   for (const auto& zx : prism.footprint) {
     const Eigen::Vector3d corner(zx.y(), prism.y_min, zx.x());
@@ -60,20 +58,19 @@ double scaleFor(View view, const Bounds& bounds, const PlotSize& size) {
   constexpr double kMargin = 1.25;
   constexpr double kSmallest =
       0.5;  // [m] A drone that stays where it is does not need a microscope.
-  const plot::Point a = project(view, bounds.min);
-  const plot::Point b = project(view, bounds.max);
+  const Point a = project(view, bounds.min);
+  const Point b = project(view, bounds.max);
   return kMargin * std::max(std::max(b.x - a.x, kSmallest) / size.width,
                             std::max(b.y - a.y, kSmallest) / size.height);
 }
 
-void setLimits(plot::Panel& panel, View view, const Bounds& bounds, const PlotSize& size,
-               double scale) {
-  const plot::Point middle = project(view, 0.5 * (bounds.min + bounds.max));
+void setLimits(Panel& panel, View view, const Bounds& bounds, const PlotSize& size, double scale) {
+  const Point middle = project(view, 0.5 * (bounds.min + bounds.max));
   panel.x.limits = {middle.x - 0.5 * scale * size.width, middle.x + 0.5 * scale * size.width};
   panel.y.limits = {middle.y - 0.5 * scale * size.height, middle.y + 0.5 * scale * size.height};
 }
 
-plot::Axis axis(const char* label, bool reversed = false) {
+Axis axis(const char* label, bool reversed = false) {
   return {.label = label, .reversed = reversed};
 }
 
@@ -98,13 +95,13 @@ void addScene(Drawing& drawing, const Scene& scene) {
                                        {b.x(), y, b.z()},
                                        {b.x(), b.y(), b.z()},
                                        {b.x(), b.y(), a.z()}},
-                            .style = plot::Style::kLine,
+                            .style = Style::kLine,
                             .colour = Colour::kLightGrey,
                             .width = 1.2,
                             .background = true});
 }
 
-plot::Point project(View view, const Eigen::Vector3d& p) {
+Point project(View view, const Eigen::Vector3d& p) {
   switch (view) {
     case View::kTop:
       return {p.x(), p.z()};
@@ -116,8 +113,8 @@ plot::Point project(View view, const Eigen::Vector3d& p) {
   return {};
 }
 
-plot::Panel viewPanel(const Drawing& drawing, View view) {
-  plot::Panel panel;
+Panel viewPanel(const Drawing& drawing, View view) {
+  Panel panel;
   panel.equal_aspect = true;
   switch (view) {
     case View::kTop:
@@ -136,15 +133,20 @@ plot::Panel viewPanel(const Drawing& drawing, View view) {
       panel.y = axis("height y [m]");
       break;
   }
+  panel.value_label = drawing.value_label;
+  panel.value_limits = drawing.value_limits;
+  if (const auto& image = drawing.images[static_cast<std::size_t>(view)])
+    panel.rasters.push_back(*image);
   for (const auto& box : drawing.boxes) panel.polygons.push_back(rectangle(view, box.min, box.max));
   for (const auto& prism : drawing.prisms) panel.polygons.push_back(outline(view, prism));
   if (!panel.polygons.empty()) panel.polygons.front().name = "obstacle";
   for (const auto& curve : drawing.curves) {
-    plot::Series series{.name = curve.name,
-                        .style = curve.style,
-                        .colour = curve.colour,
-                        .width = curve.width,
-                        .symbol = curve.symbol};
+    Series series{.name = curve.name,
+                  .style = curve.style,
+                  .colour = curve.colour,
+                  .width = curve.width,
+                  .symbol = curve.symbol,
+                  .values = curve.values};
     series.points.reserve(curve.points.size());
     for (const auto& p : curve.points) series.points.push_back(project(view, p));
     panel.series.push_back(std::move(series));
@@ -155,10 +157,10 @@ plot::Panel viewPanel(const Drawing& drawing, View view) {
   return panel;
 }
 
-plot::Figure viewFigure(const Drawing& drawing, View view) {
-  plot::Figure figure{
+Figure viewFigure(const Drawing& drawing, View view) {
+  Figure figure{
       .title = {}, .width_px = 800, .height_px = 700, .panels = {viewPanel(drawing, view)}};
-  plot::Panel& panel = figure.panels.front();
+  Panel& panel = figure.panels.front();
   if (!drawing.title.empty()) panel.title += " – " + drawing.title;
   const Bounds bounds = boundsOf(drawing);
   const PlotSize size{.width = 660.0, .height = 550.0};
@@ -166,29 +168,29 @@ plot::Figure viewFigure(const Drawing& drawing, View view) {
   return figure;
 }
 
-plot::Figure viewsFigure(const Drawing& drawing) {
-  plot::Figure figure{.title = drawing.title,
-                      .rows = 2,
-                      .columns = 2,
-                      .width_px = 1000,
-                      .height_px = 900,
-                      .panels = {}};
+Figure viewsFigure(const Drawing& drawing) {
+  Figure figure{.title = drawing.title,
+                .rows = 2,
+                .columns = 2,
+                .width_px = 1000,
+                .height_px = 900,
+                .panels = {}};
   // One scale for all three, so that a thing is as large in each, and above or beside itself.
   const Bounds bounds = boundsOf(drawing);
   const PlotSize size{.width = 400.0, .height = 330.0};
   double scale = 0.0;
   for (const auto& view : kViewNames) scale = std::max(scale, scaleFor(view.value, bounds, size));
   const auto panel = [&](View view) {
-    plot::Panel out = viewPanel(drawing, view);
+    Panel out = viewPanel(drawing, view);
     out.legend = false;
     setLimits(out, view, bounds, size, scale);
     return out;
   };
-  plot::Panel legend = viewPanel(drawing, View::kTop);
+  Panel legend = viewPanel(drawing, View::kTop);
   legend.title = {};
   legend.legend_only = true;
   figure.panels = {panel(View::kTop), legend, panel(View::kFront), panel(View::kSide)};
   return figure;
 }
 
-}  // namespace tautline::report
+}  // namespace tautline::plot

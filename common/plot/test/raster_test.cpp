@@ -1,0 +1,50 @@
+#include "common/plot/raster.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "common/plot/figure.h"
+
+namespace tautline::plot {
+namespace {
+
+TEST(Raster, TheScaleGrowsLighterAndClamps) {
+  const auto lightness = [](const Rgb& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
+  double before = -1.0;
+  for (int i = 0; i <= 20; ++i) {
+    const double now = lightness(viridis(0.05 * i));
+    EXPECT_GT(now, before) << i;
+    before = now;
+  }
+  EXPECT_EQ(viridis(-1.0), viridis(0.0));
+  EXPECT_EQ(viridis(2.0), viridis(1.0));
+}
+
+TEST(Raster, ValuesOutsideTheScaleAndHolesHaveAColour) {
+  const auto colours =
+      coloursOf({2.0, 4.0, 9.0, std::numeric_limits<double>::quiet_NaN()}, 2.0, 4.0);
+  EXPECT_EQ(colours[0], viridis(0.0));
+  EXPECT_EQ(colours[1], viridis(1.0));
+  EXPECT_EQ(colours[2], viridis(1.0));
+  EXPECT_EQ(colours[3], grey(1.0));
+}
+
+// gnuplot wants pixel centres, and the panel must be as large as the image's outer edges.
+TEST(Raster, PixelsAreWrittenAtTheirCentres) {
+  Panel panel;
+  panel.rasters.push_back({.x_min = 10.0,
+                           .y_min = 20.0,
+                           .pixel_width = 2.0,
+                           .pixel_height = 4.0,
+                           .columns = 2,
+                           .rows = 1,
+                           .pixels = {grey(0.0), grey(1.0)}});
+  const std::string script = gnuplotScript({.panels = {panel}});
+  EXPECT_NE(script.find("11 22 0 0 0\n13 22 255 255 255\n"), std::string::npos) << script;
+  EXPECT_NE(script.find("with rgbimage pixels"), std::string::npos);
+  EXPECT_NE(script.find("set xrange [10:14]"), std::string::npos) << script;
+}
+
+}  // namespace
+}  // namespace tautline::plot
