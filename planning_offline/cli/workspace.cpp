@@ -1,0 +1,283 @@
+#include "planning_offline/cli/workspace.h"
+
+#include <array>
+#include <charconv>
+#include <limits>
+#include <utility>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/core.h>
+
+#include "common/error.h"
+#include "common/mission/scene.h"
+#include "common/toml/config_file.h"
+#include "common/toml/toml_file.h"
+#include "planning_offline/field/free_space.h"
+#include "planning_offline/field/reach.h"
+
+namespace tautline::planning {
+namespace {
+
+InputError usage(const char* option, std::string problem, std::string allowed = {},
+                 std::string remedy = {}) {
+  return InputError({.key = option,
+                     .problem = std::move(problem),
+                     .allowed = std::move(allowed),
+                     .remedy = std::move(remedy)},
+                    ExitCode::kUsage);
+}
+
+std::vector<double> parseNumbers(const std::string& text, const char* option, std::size_t count,
+                                 const char* allowed) {
+  std::vector<double> out;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    double value = 0.0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc{} || !std::isfinite(value)) break;
+    out.push_back(value);
+    at = next;
+    if (at == end) break;
+    if (*at++ != ',') break;
+  }
+  if (at != end || out.size() != count) throw usage(option, fmt::format("is '{}'", text), allowed);
+  return out;
+}
+
+std::string pointText(const Eigen::Vector3d& p) {
+  return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
+}
+
+/// The cell of a point that the vehicle is to be in; explains why it cannot.
+CellIndex cellFor(const Eigen::Vector3d& p, const char* what, const MapSpace& space,
+                  const MapArguments& arguments, ExitCode code) {
+  const VoxelMap& map = *space.map;
+  const CellIndex cell = map.indexAt(p);
+  const auto refuse = [&](std::string problem, std::string allowed, std::string remedy) {
+    return InputError({.key = what,
+                       .problem = std::move(problem),
+                       .allowed = std::move(allowed),
+                       .remedy = std::move(remedy)},
+                      code);
+  };
+  if (cell == kNoCell) {
+    const Eigen::Vector3d end =
+        map.origin + map.resolution * Eigen::Vector3d(map.shape.nx, map.shape.ny, map.shape.nz);
+    throw refuse(fmt::format("{} is outside the map {}", pointText(p), map.name),
+                 fmt::format("{} to {}", pointText(map.origin), pointText(end)), {});
+  }
+  if (space.lattice->free(cell)) return cell;
+  switch (map.cells[static_cast<std::size_t>(cell)]) {
+    case CellState::kOccupied:
+      throw refuse(fmt::format("{} is inside an obstacle of the map {}", pointText(p), map.name),
+                   {}, "choose a free place");
+    case CellState::kUnknown:
+      throw refuse(fmt::format("{} is in unknown space of the map {}", pointText(p), map.name), {},
+                   "choose a known place, or --unknown-free");
+    case CellState::kFree:
+      break;
+  }
+  throw refuse(fmt::format("{} is nearer than {:g} m to an obstacle of the map {}", pointText(p),
+                           arguments.clearance, map.name),
+               {}, "choose a place with more room, or a smaller --clearance");
+}
+
+std::vector<Reward> readRewards(const std::string& path) {
+  const TomlFile file = TomlFile::load(path);
+  TomlTable root = file.root();
+  std::vector<Reward> rewards;
+  for (TomlTable& row : root.tables("rewards")) {
+    Reward reward;
+    row.require("position_m", reward.position);
+    row.require("value", reward.value, Range{0.0, std::numeric_limits<double>::max()});
+    row.finish();
+    rewards.push_back(reward);
+  }
+  root.finish();
+  if (rewards.empty())
+    throw root.error("rewards", "no rows", "[[rewards]] with position_m and value");
+  return rewards;
+}
+
+std::vector<double> rewardPerCell(const std::vector<Reward>& rewards, const VoxelMap& map) {
+  std::vector<double> out;
+  if (!rewards.empty()) out.resize(map.shape.size(), 0.0);
+  for (std::size_t i = 0; i < rewards.size(); ++i) {
+    const CellIndex cell = map.indexAt(rewards[i].position);
+    if (cell == kNoCell) {
+      throw InputError({.key = fmt::format("rewards[{}].position_m", i),
+                        .problem = fmt::format("{} is outside the map {}",
+                                               pointText(rewards[i].position), map.name)});
+    }
+    out[static_cast<std::size_t>(cell)] += rewards[i].value;
+  }
+  return out;
+}
+
+}  // namespace
+
+Eigen::Vector3d parsePoint(const std::string& text, const char* option) {
+  const std::vector<double> n = parseNumbers(text, option, 3, "x,y,z in metres, e.g. 1.2,0.4,3");
+  return {n[0], n[1], n[2]};
+}
+
+void MapArguments::addTo(CLI::App& verb) {
+  verb.add_option("--map", map, "OctoMap .bt/.ot, MovingAI .map/.3dmap, or scene .toml")
+      ->required()
+      ->type_name("FILE");
+  verb.add_option("--resolution", resolution, "Edge of a cell [m]; default: the file's own")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--crop", crop, "Keep only this box: x0,y0,z0,x1,y1,z1 [m]");
+  verb.add_option("--slice", slice, "Plan in the plane at this height y [m]");
+  verb.add_option("--clearance", clearance, "Vehicle radius + tolerance kept from obstacles [m]")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_flag("--unknown-free", unknown_is_free, "Unknown space may be flown through");
+  std::map<std::string, Connectivity> names;
+  for (const auto& name : kConnectivityNames) names[name.name] = name.value;
+  verb.add_option("--connectivity", connectivity,
+                  "Moves over faces (6; 4 in the plane), edges (18; 8) or vertices (26; 8)")
+      ->transform(CLI::CheckedTransformer(names).description(""))
+      ->type_name("faces|edges|vertices")
+      ->default_str("vertices");
+  verb.add_option("--reel", reel, "Reel outlet x,y,z [m]; default: the scene's own");
+  verb.add_option("--memory-mb", memory_mb, "Largest map [MB]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--threads", threads, "0 = all cores")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
+MapSpace loadMapSpace(const MapArguments& arguments, const Progress& progress) {
+  LoadOptions options;
+  if (arguments.resolution > 0.0) options.resolution = arguments.resolution;
+  if (!arguments.crop.empty()) {
+    const auto n = parseNumbers(arguments.crop, "--crop", 6, "x0,y0,z0,x1,y1,z1 in metres");
+    options.crop = Bounds{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (!(options.crop->min.array() < options.crop->max.array()).all()) {
+      throw usage("--crop", fmt::format("is '{}'", arguments.crop),
+                  "lower corner below upper corner in x, y and z");
+    }
+  }
+  if (!arguments.slice.empty())
+    options.slice = parseNumbers(arguments.slice, "--slice", 1, "a height in metres").front();
+  options.memory_limit = std::int64_t{arguments.memory_mb} << 20;
+  progress.report("reading the map", -1.0);
+  VoxelMap map = loadMap(arguments.map, options);
+  if (!arguments.reel.empty()) map.reel = parsePoint(arguments.reel, "--reel");
+  const FreeSpaceOptions free{arguments.clearance, arguments.unknown_is_free, arguments.threads};
+  std::vector<std::uint8_t> cells = freeSpace(map, free, progress);
+  MapSpace space;
+  space.lattice = std::make_unique<Lattice>(map.shape, arguments.connectivity, std::move(cells));
+  space.map = std::make_shared<const VoxelMap>(std::move(map));
+  if (space.lattice->freeCount() == 0) {
+    throw InputError({.file = arguments.map,
+                      .problem = "has no free cell",
+                      .remedy = "a smaller --clearance, or --unknown-free"});
+  }
+  return space;
+}
+
+void RiskArguments::addTo(CLI::App& verb) {
+  map.addTo(verb);
+  verb.add_option("--params", params,
+                  "Risk parameters (TOML); default: config/risk/default.toml's values")
+      ->type_name("FILE");
+}
+
+FieldRequest withMapArguments(FieldRequest request, const MapArguments& arguments) {
+  request.unknown_is_obstacle = !arguments.unknown_is_free;
+  request.threads = arguments.threads;
+  return request;
+}
+
+RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress) {
+  const RiskParams params =
+      arguments.params.empty() ? RiskParams{} : loadConfig<RiskParams>(arguments.params);
+  RiskSpace out{loadMapSpace(arguments.map, progress), nullptr};
+  const VoxelMap& map = *out.space.map;
+  MapFields fields =
+      computeFields(map, withMapArguments(neededFields(params, map), arguments.map), progress);
+  std::shared_ptr<TautString> string;
+  if (map.reel) string = makeTautString(map, *map.reel);
+  out.risk =
+      std::make_unique<RiskModel>(out.space.map, std::move(fields), params, std::move(string));
+  return out;
+}
+
+void PlanArguments::addTo(CLI::App& verb) {
+  risk.addTo(verb);
+  verb.add_option("--start", start,
+                  "Where the vehicle starts: x,y,z [m]; default: the scene's start");
+  verb.add_option("--goal", goal,
+                  "Where it is to go: x,y,z [m]; default: the planner chooses among the rewards");
+  verb.add_option("--rewards", rewards,
+                  "TOML file of [[rewards]] with position_m, value; default: the scene's")
+      ->type_name("FILE");
+  std::map<std::string, Objective> names;
+  for (const auto& name : kObjectiveNames) names[name.name] = name.value;
+  verb.add_option("--objective", objective, "What a plan without --goal maximizes")
+      ->transform(CLI::CheckedTransformer(names).description(""))
+      ->type_name("ratio|expected_reward")
+      ->default_str("ratio");
+  verb.add_option("--risk-cap", options.risk_cap, "No path of a higher risk")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb.add_option("--discount", options.discount, "Of the exact planner's reward")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb.add_option("--lookback", options.lookback, "States that `lookback` remembers")
+      ->check(CLI::Range(2, 4))
+      ->capture_default_str();
+  verb.add_option("--time-limit-s", options.time_limit, "Of one planner")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--label-limit", options.label_limit, "Labels or paths a planner may hold")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--seed", options.seed, "Of everything random")->capture_default_str();
+  verb.add_flag("--straight-tether", straight_tether,
+                "Only cells that a tether without contacts reaches");
+}
+
+PlanSpace loadPlanSpace(const PlanArguments& arguments, const Progress& progress) {
+  PlanSpace out;
+  out.options = arguments.options;
+  out.options.objective = arguments.objective;
+  out.options.threads = arguments.risk.map.threads;
+  out.risk_space = loadRiskSpace(arguments.risk, progress);
+  MapSpace& space = out.risk_space.space;
+  const VoxelMap& map = *space.map;
+  if (arguments.straight_tether) {
+    if (!map.reel) throw usage("--straight-tether", "needs a reel", {}, "--reel x,y,z");
+    const ReachMap reach =
+        computeReach(map, {space.lattice->freeCells().begin(), space.lattice->freeCells().end()},
+                     *map.reel, {.threads = arguments.risk.map.threads}, progress);
+    space.lattice =
+        std::make_unique<Lattice>(map.shape, arguments.risk.map.connectivity, reach.straight);
+  }
+  if (arguments.start.empty() && !map.start)
+    throw usage("--start", "is missing and the map has none", "x,y,z in metres");
+  out.problem.start = arguments.start.empty()
+                          ? cellFor(*map.start, "start_m of the scene", space, arguments.risk.map,
+                                    ExitCode::kConfig)
+                          : cellFor(parsePoint(arguments.start, "--start"), "--start", space,
+                                    arguments.risk.map, ExitCode::kUsage);
+  if (!arguments.goal.empty()) {
+    out.options.goal = cellFor(parsePoint(arguments.goal, "--goal"), "--goal", space,
+                               arguments.risk.map, ExitCode::kUsage);
+  }
+  out.problem.reward =
+      rewardPerCell(arguments.rewards.empty() ? map.rewards : readRewards(arguments.rewards), map);
+  if (!out.options.goal && out.problem.reward.empty()) {
+    throw usage("--goal", "is missing and there are no rewards to choose a goal by",
+                "--goal x,y,z, or --rewards FILE");
+  }
+  out.problem.lattice = space.lattice.get();
+  out.problem.risk = out.risk_space.risk.get();
+  return out;
+}
+
+}  // namespace tautline::planning

@@ -1,0 +1,87 @@
+#pragma once
+
+/// @file
+/// What all verbs of `tautline-plan` begin with: the options about map, vehicle and risk, and the
+/// map, lattice and risk model made of them. Not real-time safe: offline only.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <Eigen/Core>
+
+#include "planning_offline/field/map_fields.h"
+#include "planning_offline/map/lattice.h"
+#include "planning_offline/map/load_map.h"
+#include "planning_offline/map/voxel_map.h"
+#include "planning_offline/planner/planner.h"
+#include "planning_offline/progress.h"
+#include "planning_offline/risk/risk_model.h"
+
+namespace tautline::planning {
+
+/// "x,y,z" in metres. Throws InputError (usage) that names the option.
+[[nodiscard]] Eigen::Vector3d parsePoint(const std::string& text, const char* option);
+
+/// About the map and where in it the vehicle may be.
+struct MapArguments {
+  std::string map;
+  double resolution{0.0};
+  std::string crop;
+  std::string slice;
+  double clearance{0.0};
+  bool unknown_is_free{false};
+  Connectivity connectivity{Connectivity::kVertices};
+  std::string reel;
+  int memory_mb{4096};
+  int threads{0};
+
+  void addTo(CLI::App& verb);
+};
+
+/// Map, free space and lattice.
+struct MapSpace {
+  std::shared_ptr<const VoxelMap> map;
+  std::unique_ptr<Lattice> lattice;
+};
+[[nodiscard]] MapSpace loadMapSpace(const MapArguments& arguments, const Progress& progress);
+
+/// A map with its risk.
+struct RiskArguments {
+  MapArguments map;
+  std::string params;
+
+  void addTo(CLI::App& verb);
+};
+struct RiskSpace {
+  MapSpace space;
+  std::unique_ptr<RiskModel> risk;
+};
+[[nodiscard]] RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress);
+
+/// Fields of the map that the arguments ask for; shared by the risk model and the verb `fields`.
+[[nodiscard]] FieldRequest withMapArguments(FieldRequest request, const MapArguments& arguments);
+
+/// Where to plan from and to, and with what effort.
+struct PlanArguments {
+  RiskArguments risk;
+  std::string start;
+  std::string goal;
+  std::string rewards;
+  Objective objective{Objective::kRatio};
+  PlanOptions options;
+  bool straight_tether{false};
+
+  /// `with_goal`: also the options about ends and rewards.
+  void addTo(CLI::App& verb);
+};
+struct PlanSpace {
+  RiskSpace risk_space;
+  PlanProblem problem;
+  PlanOptions options;
+};
+[[nodiscard]] PlanSpace loadPlanSpace(const PlanArguments& arguments, const Progress& progress);
+
+}  // namespace tautline::planning
