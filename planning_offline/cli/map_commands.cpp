@@ -225,6 +225,10 @@ void addReachCommand(CLI::App& app, ExitCode& result) {
   verb->add_option("--elevation-min-deg", arguments->options.elevation_min,
                    "Least elevation of a straight tether")
       ->check(CLI::Range(-90.0, 90.0));
+  verb->add_option("--tether-clearance", arguments->options.tether_clearance,
+                   "Distance that the straight tether keeps from obstacles [m]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   verb->add_flag("--json", arguments->json, "Machine-readable output");
   verb->add_option("--svg", arguments->svg, "Draw one layer of cells")->type_name("FILE");
   verb->add_option("--height", arguments->height,

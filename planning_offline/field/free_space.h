@@ -19,7 +19,7 @@ struct FreeSpaceOptions {
 };
 
 /// One byte a cell, 1 = free. Obstacles are occupied cells, unknown cells (unless they are free),
-/// and the outside of a map with a solid border.
+/// and the outside of a map with a solid border. All 0 if cancelled.
 [[nodiscard]] std::vector<std::uint8_t> freeSpace(const VoxelMap& map,
                                                   const FreeSpaceOptions& options,
                                                   const Progress& progress);

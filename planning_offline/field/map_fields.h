@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Scalar fields of a map that risk elements read, one value a cell, metres (docs/maps.md defines
-/// each exactly). Not real-time safe: offline only.
+/// Scalar fields of a map that risk elements read, one value a cell, metres (docs/map_fields.md
+/// defines each exactly). Not real-time safe: offline only.
 
 #include <vector>
 

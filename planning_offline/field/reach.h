@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// What a tether reaches from its reel. Not real-time safe: offline only.
+/// What a tether reaches from its reel (dissertation, section "Reachable Space Reduction via Ray
+/// Casting"). Not real-time safe: offline only.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,23 +16,29 @@
 namespace tautline::planning {
 
 struct ReachOptions {
-  double length_max{0.0};       ///< [m]; 0 = no limit.
-  double elevation_min{-90.0};  ///< [deg] of a straight tether.
-  int threads{0};
+  double length_max{0.0};        ///< Of a straight tether [m]; 0 = no limit.
+  double elevation_min{-90.0};   ///< Of a straight tether, seen from the reel [deg].
+  double tether_clearance{0.0};  ///< The tether also keeps out of cells whose centre is nearer to
+                                 ///< an occupied cell than this [m]; the published figure inflates
+                                 ///< obstacles by one cell, and the tether by them.
+  int threads{0};                ///< 0 = all cores.
 };
 
 struct ReachMap {
+  std::vector<std::uint8_t> straight;  ///< One a cell: free, and the straight tether from the reel
+                                       ///< to its centre meets no interior of an obstacle cell
+                                       ///< (touching faces is allowed) and is within the limits.
   std::vector<std::uint8_t>
-      straight;  ///< One a cell: free, and the straight tether from the reel to its centre meets
-                 ///< no interior of an obstacle cell (touching faces is allowed).
-  std::vector<std::uint8_t> with_contacts;  ///< Free and connected to the reel over faces.
+      with_contacts;  ///< Free and connected over faces to where the vehicle takes off: the free
+                      ///< cell nearest to the reel that a straight tether of any length reaches.
   std::size_t free{0};
   std::size_t straight_count{0};
   std::size_t with_contacts_count{0};
 };
 
-/// `free` as freeSpace() gives it; obstacles for the tether are the map's occupied cells.
-/// Throws InputError if the reel is inside an obstacle.
+/// `free` as freeSpace() gives it; obstacles for the tether are the map's occupied cells. The reel
+/// [m, M] may lie outside the map. Throws InputError if it is inside an obstacle or its clearance.
+/// When cancelled, cells that were not looked at yet count as not reached.
 [[nodiscard]] ReachMap computeReach(const VoxelMap& map, const std::vector<std::uint8_t>& free,
                                     const Eigen::Vector3d& reel, const ReachOptions& options,
                                     const Progress& progress);
