@@ -154,6 +154,23 @@ void readObstacles(TomlTable& root, Scene& scene) {
   }
 }
 
+void readLayers(TomlTable& root, Scene& scene) {
+  for (TomlTable& table : root.tables("layers")) {
+    SceneLayer& layer = scene.layers.emplace_back();
+    table.require("element", layer.element);
+    readExtent(table, layer.min, layer.max);
+    table.require("value", layer.value, Range{0.0, 1.0});
+    table.finish();
+    if ((layer.max.array() <= scene.min.array()).any() ||
+        (layer.min.array() >= scene.max.array()).any()) {
+      throw table.error("min_m",
+                        "to max_m is " + tomlText(layer.min) + " to " + tomlText(layer.max) +
+                            ", outside the room",
+                        tomlText(scene.min) + " to " + tomlText(scene.max));
+    }
+  }
+}
+
 Scene sceneFrom(const TomlFile& file) {
   TomlTable root = file.root();
   Scene scene;
@@ -178,6 +195,7 @@ Scene sceneFrom(const TomlFile& file) {
     table.finish();
     checkPlace(table, "position_m", reward.position, scene);
   }
+  readLayers(root, scene);
   root.finish();
   return scene;
 }
@@ -212,6 +230,10 @@ Scene sceneInWorld(const Scene& scene) {
   world.reel += shift;
   if (world.start) *world.start += shift;
   for (Reward& reward : world.rewards) reward.position += shift;
+  for (SceneLayer& layer : world.layers) {
+    layer.min += shift;
+    layer.max += shift;
+  }
   return world;
 }
 

@@ -42,6 +42,15 @@ struct Reward {
   double value{0.0};
 };
 
+/// What a risk element reads where it depends on the surroundings (terrain, threat …): a value in
+/// [0, 1] in a box of the room, for planning. Later rows hold where rows overlap.
+struct SceneLayer {
+  std::string element;  ///< Name of the risk element; the planner knows which there are.
+  Eigen::Vector3d min{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d max{Eigen::Vector3d::Zero()};
+  double value{0.0};
+};
+
 struct Scene {
   std::string name;
   std::uint64_t hash{0};  ///< FNV-1a of the file's bytes; a mission's map_hash refers to it.
@@ -54,11 +63,12 @@ struct Scene {
   Eigen::Vector3d reel{Eigen::Vector3d::Zero()};  ///< The reel outlet.
   std::optional<Eigen::Vector3d> start;           ///< The drone's tether attachment when parked.
   std::vector<Reward> rewards;
+  std::vector<SceneLayer> layers;
 };
 
 /// Strict reader: throws InputError with file, line and row. Checks that corners are ordered,
-/// footprints are simple polygons, and reel, start and rewards are in the room and outside every
-/// obstacle.
+/// footprints are simple polygons, reel, start and rewards are in the room and outside every
+/// obstacle, and layers are at least partly in the room.
 [[nodiscard]] Scene readScene(const std::filesystem::path& path);
 
 /// `name` stands for the file in errors.

@@ -27,18 +27,37 @@ namespace {
 
 int lineOfRegion(const toml::source_region& region) { return static_cast<int>(region.begin.line); }
 
-/// How an error shows the value that was found; long ones are cut.
-std::string shown(const toml::node& node) {
-  std::ostringstream out;
+/// One value on one line. (toml++ formats values well; on arrays it guesses widths from log10 of
+/// their numbers, which is undefined behaviour below 1.)
+void write(std::ostream& out, const toml::node& node) {
+  const char* separator = "";
   if (const auto* table = node.as_table()) {
-    out << toml::toml_formatter(*table);
+    out << '{';
+    for (const auto& [key, value] : *table) {
+      out << separator << key.str() << " = ";
+      write(out, value);
+      separator = ", ";
+    }
+    out << '}';
   } else if (const auto* array = node.as_array()) {
-    out << toml::toml_formatter(*array);
+    out << '[';
+    for (const toml::node& value : *array) {
+      out << separator;
+      write(out, value);
+      separator = ", ";
+    }
+    out << ']';
   } else {
     node.visit([&out](const auto& n) {
       if constexpr (toml::is_value<decltype(n)>) out << toml::toml_formatter(n);
     });
   }
+}
+
+/// How an error shows the value that was found; long ones are cut.
+std::string shown(const toml::node& node) {
+  std::ostringstream out;
+  write(out, node);
   std::string text = out.str();
   std::replace(text.begin(), text.end(), '\n', ' ');
   constexpr std::size_t kLongest = 60;
@@ -75,10 +94,10 @@ std::optional<double> asNumber(const toml::node& node) {
 
 std::string numberAllowed(Range range) { return "a number, " + rangeText(range); }
 
-/// One step of a dotted key: "waypoints[3]" is the name and an index.
+/// One step of a dotted key: "elements[3][2]" is the name and two indices.
 struct KeyStep {
   std::string name;
-  std::optional<std::size_t> index;
+  std::vector<std::size_t> indices;
 };
 
 std::vector<KeyStep> splitKey(std::string_view dotted) {
@@ -88,15 +107,16 @@ std::vector<KeyStep> splitKey(std::string_view dotted) {
     std::string_view part = dotted.substr(0, dot);
     dotted = dot == std::string_view::npos ? std::string_view() : dotted.substr(dot + 1);
     KeyStep step;
-    const std::size_t bracket = part.find('[');
+    std::size_t bracket = part.find('[');
     step.name = std::string(part.substr(0, bracket));
-    if (bracket != std::string_view::npos) {
+    while (bracket != std::string_view::npos) {
       std::size_t index = 0;
       for (const char c : part.substr(bracket + 1)) {
         if (c < '0' || c > '9') break;
         index = index * 10 + static_cast<std::size_t>(c - '0');
       }
-      step.index = index;
+      step.indices.push_back(index);
+      bracket = part.find('[', bracket + 1);
     }
     steps.push_back(step);
   }
@@ -147,11 +167,12 @@ int TomlFile::lineOf(std::string_view dotted_key) const {
     if (found == table->end()) return line;
     line = lineOfRegion(found->first.source());
     node = &found->second;
-    if (!step.index) continue;
-    const toml::array* array = node->as_array();
-    if (array == nullptr || *step.index >= array->size()) return line;
-    node = array->get(*step.index);
-    line = lineOfRegion(node->source());
+    for (const std::size_t index : step.indices) {
+      const toml::array* array = node->as_array();
+      if (array == nullptr || index >= array->size()) return line;
+      node = array->get(index);
+      line = lineOfRegion(node->source());
+    }
   }
   return line;
 }
@@ -194,6 +215,20 @@ InputError TomlTable::missing(std::string_view key) const {
 const void* TomlTable::find(std::string_view key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
   return static_cast<const toml::table*>(table_)->get(key);
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, const void* array,
+                                       Range range) const {
+  std::vector<double> result;
+  for (const toml::node& node : *static_cast<const toml::array*>(array)) {
+    const std::optional<double> number = asNumber(node);
+    if (!number || !range.contains(*number)) {
+      throw error(key + "[" + std::to_string(result.size()) + "]",
+                  "is " + shown(node) + (number ? "" : ", not a number"), numberAllowed(range));
+    }
+    result.push_back(*number);
+  }
+  return result;
 }
 
 bool TomlTable::read(std::string_view key, double& value, Range range) {
@@ -281,6 +316,37 @@ bool TomlTable::read(std::string_view key, std::vector<Eigen::Vector2d>& value, 
   return true;
 }
 
+bool TomlTable::read(std::string_view key, std::vector<double>& value, Range range) {
+  const auto* node = static_cast<const toml::node*>(find(key));
+  if (node == nullptr) return false;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) {
+    throw error(key, "is " + shown(*node) + ", not a list of numbers",
+                "[a, b, …], each " + rangeText(range));
+  }
+  value = numbers(std::string(key), array, range);
+  return true;
+}
+
+bool TomlTable::read(std::string_view key, std::vector<std::vector<double>>& value, Range range) {
+  const auto* node = static_cast<const toml::node*>(find(key));
+  if (node == nullptr) return false;
+  const std::string allowed = "[[a, b, …], [c, …], …], each " + rangeText(range);
+  const toml::array* array = node->as_array();
+  if (array == nullptr) throw error(key, "is " + shown(*node) + ", not a list of lists", allowed);
+  std::vector<std::vector<double>> result;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const std::string row = std::string(key) + "[" + std::to_string(i) + "]";
+    const toml::array* entries = array->get(i)->as_array();
+    if (entries == nullptr) {
+      throw error(row, "is " + shown(*array->get(i)) + ", not a list of numbers", allowed);
+    }
+    result.push_back(numbers(row, entries, range));
+  }
+  value = std::move(result);
+  return true;
+}
+
 bool TomlTable::readChoice(std::string_view key, const std::vector<const char*>& names,
                            std::size_t& index) {
   const auto* node = static_cast<const toml::node*>(find(key));
@@ -317,6 +383,18 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
     result.push_back(TomlTable(file_, element.as_table(), pathOf(row)));
   }
   return result;
+}
+
+bool TomlTable::has(std::string_view key) const {
+  return static_cast<const toml::table*>(table_)->contains(key);
+}
+
+std::vector<std::string> TomlTable::tableNames() const {
+  std::vector<std::string> names;
+  for (const auto& [key, node] : *static_cast<const toml::table*>(table_)) {
+    if (node.is_table()) names.emplace_back(key.str());
+  }
+  return names;
 }
 
 void TomlTable::finish() const {

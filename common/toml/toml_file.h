@@ -77,6 +77,12 @@ class TomlTable {
   /// Array of two-component arrays, `[[a, b], …]`.
   bool read(std::string_view key, std::vector<Eigen::Vector2d>& value, Range range = {});
 
+  /// Array of numbers, any length, `[a, b, …]`.
+  bool read(std::string_view key, std::vector<double>& value, Range range = {});
+
+  /// Array of arrays of numbers, `[[a, b, …], [c], …]`; rows of any length, equal or not.
+  bool read(std::string_view key, std::vector<std::vector<double>>& value, Range range = {});
+
   /// One of `names`; `index` is its position there.
   bool readChoice(std::string_view key, const std::vector<const char*>& names, std::size_t& index);
 
@@ -96,6 +102,13 @@ class TomlTable {
 
   /// The tables of an array of tables `[[key]]`, in order; none if missing.
   [[nodiscard]] std::vector<TomlTable> tables(std::string_view key);
+
+  /// True if the key is there, whatever it is.
+  [[nodiscard]] bool has(std::string_view key) const;
+
+  /// Keys of this table that are tables, in alphabetic order: for files whose tables have names of
+  /// their own.
+  [[nodiscard]] std::vector<std::string> tableNames() const;
 
   /// Throws for the first key that nobody asked for, with the nearest known key as remedy.
   void finish() const;
@@ -118,6 +131,8 @@ class TomlTable {
   [[nodiscard]] std::string pathOf(std::string_view key) const;
   [[nodiscard]] InputError missing(std::string_view key) const;
   const void* find(std::string_view key);
+  [[nodiscard]] std::vector<double> numbers(const std::string& key, const void* array,
+                                            Range range) const;
 
   TomlFile file_;
   const void* table_;

@@ -6,6 +6,7 @@
 /// z). A map with one cell along y is planar: planners then move in the zx plane, and 4 / 8
 /// neighbours take the place of 6 / 26. Not real-time safe: offline only.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -50,11 +51,16 @@ struct GridShape {
 
 enum class CellState : std::uint8_t { kFree, kOccupied, kUnknown };
 
+/// Risk elements that read a layer of the map; the only names a MapLayer has.
+inline constexpr std::array<const char*, 6> kMapLayerNames{
+    "dynamic_threat",    "verticality", "lateral_inclination",
+    "terrain_stability", "surface",     "slippage"};
+
 /// Risk of an element that a map brings along (terrain, surface, threat …): one value a cell, zero
 /// where nothing was said. Which elements read a layer: docs/risk.md.
 struct MapLayer {
-  std::string name;           ///< Name of the risk element, e.g. "terrain_stability".
-  std::vector<float> values;  ///< One a cell; meaning and unit are the element's.
+  std::string name;            ///< Name of the risk element, e.g. "terrain_stability".
+  std::vector<double> values;  ///< One a cell; meaning and unit are the element's.
 };
 
 /// Occupied and unknown cells, and what a scene says about the mission. Positions in M [m].

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "common/fields.h"
+#include "planning_offline/risk/risk_element.h"
 
 namespace tautline::planning {
 
@@ -50,8 +51,8 @@ inline constexpr std::array<EnumName<TurnLaw>, 4> kTurnLawNames{
      {TurnLaw::kQuadratic, "quadratic"},
      {TurnLaw::kThreshold, "threshold"}}};
 
-/// Distance to the closest obstacle, from the surface of the cell's centre to the surface of the
-/// nearest occupied cell.
+/// Distance to the closest obstacle, from the cell's centre to the surface of the nearest obstacle
+/// cell.
 struct DistanceParams {
   Membership member{0.05, 0.2, 1.2};
   double tolerance{0.0};
@@ -67,7 +68,7 @@ struct DistanceParams {
 };
 
 /// Scale of characteristic dimension E_cd/A_cd: width of the narrowest passage over the vehicle's.
-/// At most `granular` is forbidden.
+/// At most 1 is granular: nothing gets through.
 struct ScaleParams {
   Membership member{0.0, 1.0, 2.5};
   double agent_dimension{0.3};
@@ -101,7 +102,7 @@ struct VisibilityParams {
   void validate() const;
 };
 
-/// Map layer "dynamic_threat": probabilities per second; risk = 1 − (1 − p)^dwell.
+/// Map layer "dynamic_threat": probabilities p per second; risk = 1 − (1 − p)^dwell.
 struct ThreatParams {
   double dwell{0.0};
   template <class Visitor>
@@ -137,7 +138,7 @@ struct ActionLengthParams {
   double per_metre{0.0911};
   template <class Visitor>
   void fields(Visitor& v) {
-    v.field("per_m", per_metre, Range{0.0, 10.0}, "risk per metre of the action");
+    v.field("per_m", per_metre, Range{0.0, 10.0}, "risk per metre of the action; 0 = element off");
   }
 };
 
@@ -149,8 +150,10 @@ struct TurnParams {
   template <class Visitor>
   void fields(Visitor& v) {
     v.choice("law", law, kTurnLawNames, "how the risk grows with the change of direction");
-    v.field("risk", risk, Range{0.0, 10.0},
-            "of a turn, or per metre of change (linear), or per square metre (quadratic)");
+    v.field(
+        "risk", risk, Range{0.0, 10.0},
+        "of a turn, or per metre of change (linear), or per square metre (quadratic); 0 = element "
+        "off");
     v.field("gentle_cosine", gentle_cosine, Range{-1.0, 1.0},
             "threshold law: cosine of the sharpest gentle turn");
     v.field("sharp_factor", sharp_factor, Range{1.0, 1000.0}, "threshold law: of sharper turns");
@@ -219,7 +222,8 @@ struct BatteryParams {
   void validate() const;
 };
 
-/// Hard gates of the tether. The planners that know the tether never go beyond them.
+/// Hard gates of the tether. The planners that know the tether never go beyond them; a path that
+/// does has risk 1.
 struct TetherLimits {
   double length_max{0.0};
   int contacts_max{-1};
@@ -284,5 +288,9 @@ struct RiskParams {
   }
   void validate() const;
 };
+
+/// True if the parameters give the element any risk at all. What it also needs (a map layer, a
+/// reel) may still be missing: it is then 0 everywhere.
+[[nodiscard]] bool isOn(const RiskParams& params, RiskElement element) noexcept;
 
 }  // namespace tautline::planning

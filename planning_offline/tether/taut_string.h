@@ -3,7 +3,7 @@
 /// @file
 /// The tether as a taut string from the reel round the obstacles to the vehicle. It is a function
 /// of the path flown: contacts form on convex edges of occupied cells where the string sweeps onto
-/// them and are released where it can straighten again (docs/planning.md, "Tether").
+/// them and are released where it can straighten again (docs/taut_string.md).
 ///
 /// A contact stack is a number: equal stacks have equal numbers, whatever way led there, so a
 /// search can carry and compare them. All points are in M [m]; straight moves, any length. Not
@@ -44,6 +44,10 @@ class TautString {
 
   /// Contact points from the reel to the vehicle.
   [[nodiscard]] virtual std::vector<Eigen::Vector3d> contacts(StackId stack) const = 0;
+
+  /// Moves so far after which no string outside all obstacles was found (docs/taut_string.md): zero
+  /// in the plane, and in space as long as no move goes through an obstacle.
+  [[nodiscard]] virtual std::int64_t unresolvedMoves() const noexcept { return 0; }
 
   /// Taut length to a vehicle at `position` [m].
   [[nodiscard]] double length(StackId stack, const Eigen::Vector3d& position) const {

@@ -27,7 +27,9 @@ TEST(Scene, ReadsEverything) {
                      "floor_m = 0.125\nresolution_m = 0.2\nstart_m = [1, 0.25, 3]\n"
                      "[[boxes]]\nname = 'b'\nmin_m = [2, 0, 2]\nmax_m = [3, 1, 3]\n"
                      "[[prisms]]\nname = 'p'\nfootprint_m = [[4, 4], [5, 4], [4, 5]]\ny_min_m = 0\n"
-                     "y_max_m = 2\n[[rewards]]\nposition_m = [5, 1, 1]\nvalue = 0.9\n",
+                     "y_max_m = 2\n[[rewards]]\nposition_m = [5, 1, 1]\nvalue = 0.9\n"
+                     "[[layers]]\nelement = 'surface'\nmin_m = [0, 0, 0]\nmax_m = [9, 1, 3]\n"
+                     "value = 0.25\n",
                  "s");
   EXPECT_EQ(scene.name, "room");
   EXPECT_EQ(scene.floor, 0.125);
@@ -40,9 +42,14 @@ TEST(Scene, ReadsEverything) {
   EXPECT_EQ(scene.prisms[0].footprint[1], Eigen::Vector2d(5, 4));
   ASSERT_EQ(scene.rewards.size(), 1U);
   EXPECT_EQ(scene.rewards[0].value, 0.9);
+  ASSERT_EQ(scene.layers.size(), 1U);
+  EXPECT_EQ(scene.layers[0].element, "surface");
+  EXPECT_EQ(scene.layers[0].max, Eigen::Vector3d(9, 1, 3));
+  EXPECT_EQ(scene.layers[0].value, 0.25);
 }
 
 TEST(Scene, EveryErrorNamesItsRow) {
+  const std::string layer = "[[layers]]\nelement = 'surface'\nmin_m = [0, 0, 0]\n";
   const std::string prism = "[[prisms]]\nname = 'p'\ny_min_m = 0\ny_max_m = 2\nfootprint_m = ";
   struct Case {
     std::string text;
@@ -67,6 +74,16 @@ TEST(Scene, EveryErrorNamesItsRow) {
            Case{kRoom + "[[rewards]]\nposition_m = [9, 1, 1]\nvalue = 1\n",
                 "rewards[0].position_m"},
            Case{kRoom + "[[rewards]]\nposition_m = [5, 1, 1]\nvalue = -1\n", "rewards[0].value"},
+           Case{kRoom + layer + "max_m = [1, 1, 1]\nvalue = -0.1\n", "layers[0].value"},
+           Case{kRoom + layer + "max_m = [1, 1, 1]\nvalue = 1.1\n", "layers[0].value"},
+           Case{kRoom + layer + "max_m = [1, 1, 1]\n", "layers[0].value"},
+           Case{kRoom + layer + "max_m = [1, 0, 1]\nvalue = 1\n", "layers[0].max_m"},
+           Case{kRoom + layer + "max_m = [1, 1, 1]\nvalue = 1\n" +
+                    "[[layers]]\nelement = 'surface'\nmin_m = [6, 0, 0]\nmax_m = [7, 1, "
+                    "1]\nvalue = 1\n",
+                "layers[1].min_m"},
+           Case{kRoom + "[[layers]]\nmin_m = [0, 0, 0]\nmax_m = [1, 1, 1]\nvalue = 1\n",
+                "layers[0].element"},
        }) {
     EXPECT_EQ(problemIn(c.text).key, c.key) << c.text;
   }
@@ -77,13 +94,16 @@ TEST(Scene, InWorldTheReelIsTheOriginAndShapesKeepTheirPlace) {
       kRoom +
           "start_m = [1, 0.25, 3]\n[[boxes]]\nname = 'b'\nmin_m = [2, 0, 2]\nmax_m = [3, 1, 3]\n"
           "[[prisms]]\nname = 'p'\nfootprint_m = [[4, 4], [5, 4], [4, 5]]\ny_min_m = 0\n"
-          "y_max_m = 2\n[[rewards]]\nposition_m = [5, 1, 1]\nvalue = 0.9\n",
+          "y_max_m = 2\n[[rewards]]\nposition_m = [5, 1, 1]\nvalue = 0.9\n"
+          "[[layers]]\nelement = 'surface'\nmin_m = [0, 0, 0]\nmax_m = [9, 1, 3]\nvalue = 1\n",
       "s");
   const Scene world = sceneInWorld(scene);
   EXPECT_TRUE(world.reel.isZero(0.0));
   EXPECT_EQ(world.floor, -0.5);
   EXPECT_EQ(*world.start, Eigen::Vector3d(0, -0.25, 1));
   EXPECT_EQ(world.rewards[0].position, Eigen::Vector3d(4, 0.5, -1));
+  EXPECT_EQ(world.layers[0].min, Eigen::Vector3d(-1, -0.5, -2));
+  EXPECT_EQ(world.layers[0].max, Eigen::Vector3d(8, 0.5, 1));
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 6.0);
   for (int i = 0; i < 200; ++i) {

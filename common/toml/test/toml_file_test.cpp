@@ -142,6 +142,70 @@ TEST(TomlTable, PairsAndTheirRows) {
   EXPECT_EQ(problemOf([&] { root.read("bad", pairs); }).key, "bad[1]");
 }
 
+TEST(TomlTable, ListsOfNumbersOfAnyLength) {
+  TomlTable root = TomlFile::parse("a = [0.5, 1, 0]\nempty = []\n", "f").root();
+  std::vector<double> list{7.0};
+  EXPECT_FALSE(root.read("absent", list));
+  EXPECT_EQ(list, std::vector<double>{7.0});
+  EXPECT_TRUE(root.read("a", list, Range{0, 1}));
+  EXPECT_EQ(list, (std::vector<double>{0.5, 1.0, 0.0}));
+  EXPECT_TRUE(root.read("empty", list));
+  EXPECT_TRUE(list.empty());
+}
+
+TEST(TomlTable, ListsOfListsNeedNotBeRectangular) {
+  TomlTable root = TomlFile::parse("a = [[0, 1], [2.5], [], [3, 4, 5]]\n", "f").root();
+  std::vector<std::vector<double>> rows;
+  EXPECT_TRUE(root.read("a", rows));
+  EXPECT_EQ(rows, (std::vector<std::vector<double>>{{0, 1}, {2.5}, {}, {3, 4, 5}}));
+}
+
+TEST(TomlTable, WrongEntriesOfListsAreNamedWithTheirLine) {
+  struct Case {
+    const char* text;
+    const char* key;
+    int line;
+  };
+  for (const Case& c :
+       {Case{"a = [0,\n nan]", "a[1]", 2}, Case{"a = [0, 1.5]", "a[1]", 1},
+        Case{"a = [\"0\"]", "a[0]", 1}, Case{"a = 1", "a", 1}, Case{"a = [[0]]", "a[0]", 1}}) {
+    TomlTable root = TomlFile::parse(c.text, "f").root();
+    std::vector<double> list{7.0};
+    const InputProblem problem = problemOf([&] { root.read("a", list, Range{0, 1}); });
+    EXPECT_EQ(problem.key, c.key) << c.text;
+    EXPECT_EQ(problem.line, c.line) << c.text;
+    EXPECT_THAT(problem.allowed, HasSubstr("0 to 1")) << c.text;
+    EXPECT_EQ(list, std::vector<double>{7.0}) << c.text;
+  }
+  for (const Case& c :
+       {Case{"a = [[0],\n [1,\n -1]]", "a[1][1]", 3}, Case{"a = [[0],\n true]", "a[1]", 2},
+        Case{"a = [[0], [1, inf]]", "a[1][1]", 1}, Case{"a = {b = 1}", "a", 1}}) {
+    TomlTable root = TomlFile::parse(c.text, "f").root();
+    std::vector<std::vector<double>> rows{{7.0}};
+    const InputProblem problem = problemOf([&] { root.read("a", rows, Range{0, 1}); });
+    EXPECT_EQ(problem.key, c.key) << c.text;
+    EXPECT_EQ(problem.line, c.line) << c.text;
+    EXPECT_THAT(problem.allowed, HasSubstr("0 to 1")) << c.text;
+    EXPECT_EQ(rows, (std::vector<std::vector<double>>{{7.0}})) << c.text;
+  }
+}
+
+TEST(TomlTable, TablesAreListedAndKeysFound) {
+  TomlTable root = TomlFile::parse("z = 1\n[b]\nx = 1\n[a]\n[[rows]]\n", "f").root();
+  EXPECT_EQ(root.tableNames(), (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(root.has("z"));
+  EXPECT_TRUE(root.has("rows"));
+  EXPECT_FALSE(root.has("x"));
+  EXPECT_TRUE(root.table("b").front().has("x"));
+}
+
+TEST(TomlTable, ErrorsShowTheValueOnOneLine) {
+  TomlTable root = TomlFile::parse("a = [0.01,\n [1, \"x\"], {b = true, c = [0.5]}]\n", "f").root();
+  double value = 0.0;
+  EXPECT_EQ(problemOf([&] { root.read("a", value); }).problem,
+            "is [0.01, [1, 'x'], {b = true, c = [0.5]}], not a number");
+}
+
 TEST(TomlTable, UnknownKeyIsRefusedWithTheNearestOne) {
   TomlTable root = TomlFile::parse("[[rows]]\npositoin_m = 1\n", "f.toml").root();
   const InputProblem problem = problemOf([&] {

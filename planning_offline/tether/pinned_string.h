@@ -1,0 +1,85 @@
+#pragma once
+
+/// @file
+/// The taut string in space: contacts are pinned where they formed, as friction would hold them,
+/// until the string straightens over their edge. Not real-time safe: offline only.
+///
+/// All decisions are taken against the shrunk obstacles (shrunk_solid.h); contacts are reported on
+/// the true edges. docs/taut_string.md has the algorithm and its limits.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "planning_offline/map/voxel_map.h"
+#include "planning_offline/tether/convex_edges.h"
+#include "planning_offline/tether/shrunk_solid.h"
+#include "planning_offline/tether/tree_string.h"
+
+namespace tautline::planning {
+
+class PinnedString final : public TreeString {
+ public:
+  /// Keeps a copy of the map's cells. Throws InputError if the reel may not stand there
+  /// (checkedReel()).
+  PinnedString(const VoxelMap& map, const Eigen::Vector3d& reel);
+
+  /// Points of a move must be finite and within kFarthest of the map's origin. If no string outside
+  /// the obstacles is found, not by small detours either, the result is that of the straight move,
+  /// and unresolvedMoves() counts it. Such is a move through an obstacle.
+  [[nodiscard]] StackId move(StackId stack, const Eigen::Vector3d& from,
+                             const Eigen::Vector3d& to) override;
+
+  [[nodiscard]] std::int64_t unresolvedMoves() const noexcept override { return unresolved_; }
+
+ private:
+  // All points below are in cells.
+
+  /// A way of the string's end, and an axis whose edges cannot be met on it (kNoAxis: none).
+  struct Leg {
+    Eigen::Vector3d target;
+    int dead_axis;
+  };
+
+  /// The string meets an edge when its end is at `part` of the way, at `reach` of its free length.
+  struct Meeting {
+    double part;
+    double reach;
+    double place;  ///< Along the edge.
+    ConvexEdge edge;
+    int turn;
+  };
+
+  [[nodiscard]] Eigen::Vector3d cellsOf(const Eigen::Vector3d& p_M) const;
+
+  /// The stack after the string's end went from x straight to q; nothing if that takes more events
+  /// than any string needs.
+  [[nodiscard]] std::optional<StackId> drag(StackId stack, Eigen::Vector3d x,
+                                            const Eigen::Vector3d& q);
+  [[nodiscard]] StackId push(StackId stack, const Meeting& meeting);
+  /// At which part of the way of its end from x the string is straight over its last contact.
+  [[nodiscard]] std::optional<double> release(StackId stack, const Eigen::Vector3d& x,
+                                              const Leg& leg) const;
+  /// First edge that the string from c meets while its end goes from p along the leg.
+  [[nodiscard]] std::optional<Meeting> firstMeeting(const Eigen::Vector3d& c,
+                                                    const Eigen::Vector3d& p,
+                                                    const Leg& leg) const;
+  void meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
+                 const Eigen::Vector3d& q, std::optional<Meeting>& first) const;
+
+  /// True if no part of the string penetrates an obstacle.
+  [[nodiscard]] bool free(StackId stack, const Eigen::Vector3d& end);
+
+  Eigen::Vector3d origin_;
+  double resolution_;
+  ShrunkSolid solid_;
+  std::vector<Eigen::Vector3d> anchors_;  ///< By stack: its last contact on the shrunk edge.
+  std::vector<Leg> legs_;              ///< Ways still to go, the next one last; kept for its memory.
+  std::vector<std::uint8_t> checked_;  ///< By stack: all of the string below its last contact is
+                                       ///< known to be free.
+  std::int64_t unresolved_{0};
+};
+
+}  // namespace tautline::planning

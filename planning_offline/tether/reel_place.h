@@ -1,0 +1,21 @@
+#pragma once
+
+/// @file
+/// Where a reel may stand. Not real-time safe: offline only.
+
+#include <Eigen/Core>
+
+#include "planning_offline/map/voxel_map.h"
+
+namespace tautline::planning {
+
+/// The farthest that a string goes from the map's origin along an axis [cells]: as far as the
+/// integer arithmetic of the planar string goes.
+inline constexpr double kFarthest = 500'000.0;
+
+/// The reel, in M [m], if it may stand there; else throws InputError: it is too far away, not
+/// finite, or inside an obstacle, which means that all cells it touches are occupied. It may stand
+/// on an obstacle's surface.
+[[nodiscard]] const Eigen::Vector3d& checkedReel(const VoxelMap& map, const Eigen::Vector3d& reel);
+
+}  // namespace tautline::planning

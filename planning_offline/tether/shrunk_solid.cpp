@@ -1,0 +1,146 @@
+#include "planning_offline/tether/shrunk_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace tautline::planning {
+namespace {
+
+constexpr double kShrinkMin = 0.5e-6;
+/// A string comes to the very end of an edge, up to rounding, where it slides along another edge to
+/// it, or lies in the plane of the end. Ends that stop it reach a little further, the others are a
+/// little short.
+constexpr double kStops = 1e-9;
+constexpr double kTouches = -1e-12;
+
+/// A number in [0, 1) for each n: SplitMix64, from its published constants.
+double scattered(std::uint64_t n) {
+  n = (n + 1) * 0x9E3779B97F4A7C15;
+  n = (n ^ n >> 30U) * 0xBF58476D1CE4E5B9;
+  n = (n ^ n >> 27U) * 0x94D049BB133111EB;
+  return static_cast<double>((n ^ n >> 31U) >> 11U) * 0x1p-53;
+}
+
+std::vector<double> movedPlanes(int axis, int cells) {
+  std::vector<double> planes;
+  for (int k = 0; k <= cells; ++k) {
+    for (const int side : {-1, 1}) {
+      const std::int64_t n = 3 * (2 * std::int64_t{k} + (side > 0 ? 1 : 0)) + axis;
+      const double part = scattered(static_cast<std::uint64_t>(n));
+      planes.push_back(k + side * (kShrinkMin + (ShrunkSolid::kShrinkMax - kShrinkMin) * part));
+    }
+  }
+  return planes;
+}
+
+/// True if a plane through the end of an edge goes through the inside of the cell there, which lies
+/// to `side` of that end along the edge.
+bool cutsCorner(const Eigen::Vector3d& normal, const ConvexEdge& edge, int side) {
+  constexpr double kParallel = 1e-9;
+  const double least = kParallel * normal.norm();
+  const std::array<double, 3> slopes{edge.sideU() * normal[axisU(edge.axis)],
+                                     edge.sideV() * normal[axisV(edge.axis)],
+                                     side * normal[edge.axis]};
+  const auto [low, high] = std::minmax_element(slopes.begin(), slopes.end());
+  return *low < -least && *high > least;
+}
+
+}  // namespace
+
+ShrunkSolid::ShrunkSolid(const VoxelMap& map)
+    : shape_(map.shape),
+      cells_(map.cells),
+      edges_{ConvexEdges(map, 0), ConvexEdges(map, 1), ConvexEdges(map, 2)},
+      planes_{movedPlanes(0, map.shape.nx), movedPlanes(1, map.shape.ny),
+              movedPlanes(2, map.shape.nz)} {}
+
+bool ShrunkSolid::solid(const ConvexEdge& edge, int w) const noexcept {
+  Eigen::Vector3i cell;
+  cell[axisU(edge.axis)] = edge.sideU() > 0 ? edge.u : edge.u - 1;
+  cell[axisV(edge.axis)] = edge.sideV() > 0 ? edge.v : edge.v - 1;
+  cell[edge.axis] = w;
+  return occupied(cell);
+}
+
+bool ShrunkSolid::has(const ConvexEdge& edge, double w,
+                      const Eigen::Vector3d& normal) const noexcept {
+  const ConvexEdges& all = edges(edge.axis);
+  const auto convex = [&all, &edge](int slab) {
+    return slab >= 0 && slab < all.sizeW() &&
+           (all.quadrants(edge.u, edge.v, slab) >> edge.quadrant & 1U) != 0;
+  };
+  const int k = static_cast<int>(std::lround(w));
+  if (std::abs(w - k) > 2.0 * kShrinkMax || k < 0 || k > all.sizeW()) {
+    return convex(static_cast<int>(std::floor(w)));
+  }
+  const double low = plane(edge.axis, k, false);
+  const double high = plane(edge.axis, k, true);
+  const bool joint =
+      k < all.sizeW() && (all.joints(edge.u, edge.v, k) >> edge.quadrant & 1U) != 0;
+  if (joint && low - kStops <= w && w <= high + kStops) return true;
+  const bool wall = solid(edge, k - 1) && solid(edge, k);
+  const auto over = [&](int side) {
+    return wall || cutsCorner(normal, edge, side) ? kStops : kTouches;
+  };
+  return (convex(k - 1) && w <= low + over(-1)) || (convex(k) && w >= high - over(1));
+}
+
+double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
+  const Eigen::Vector3i cell = p.array().floor().cast<int>();
+  if (!occupied(cell)) return 0.0;
+  double least = 1.0;
+  for (int n = 0; n < 27; ++n) {
+    const Eigen::Vector3i way(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+    if (occupied(cell + way)) continue;
+    double out = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double within = p[axis] - cell[axis];
+      if (way[axis] != 0) out = std::max(out, way[axis] > 0 ? 1.0 - within : within);
+    }
+    least = std::min(least, out);
+  }
+  return least;
+}
+
+bool ShrunkSolid::penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept {
+  constexpr double kShortest = 1e-4;
+  const Eigen::Vector3d d = b - a;
+  const double length = d.norm();
+  // The part of the line over the grid, then cell by cell to the next plane crossed.
+  double part = 0.0;
+  double end = 1.0;
+  const Eigen::Vector3d size(shape_.nx, shape_.ny, shape_.nz);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (d[axis] == 0.0) {
+      if (a[axis] < 0.0 || a[axis] > size[axis]) return false;
+      continue;
+    }
+    const double enter = ((d[axis] > 0.0 ? 0.0 : size[axis]) - a[axis]) / d[axis];
+    const double leave = ((d[axis] > 0.0 ? size[axis] : 0.0) - a[axis]) / d[axis];
+    part = std::max(part, enter);
+    end = std::min(end, leave);
+  }
+  while (part < end) {
+    double next = end;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (d[axis] == 0.0) continue;
+      const double x = a[axis] + part * d[axis];
+      double plane = d[axis] > 0.0 ? std::floor(x) + 1.0 : std::ceil(x) - 1.0;
+      double crossing = (plane - a[axis]) / d[axis];
+      if (crossing <= part) crossing = (plane + std::copysign(1.0, d[axis]) - a[axis]) / d[axis];
+      next = std::min(next, crossing);
+    }
+    if ((next - part) * length > kShortest) {
+      // At two places: a line can be deepest at either end, but not in between only.
+      for (const double place : {0.25, 0.75}) {
+        if (depth(a + (part + place * (next - part)) * d) > kDepthMax) return true;
+      }
+    }
+    part = next;
+  }
+  return false;
+}
+
+}  // namespace tautline::planning
