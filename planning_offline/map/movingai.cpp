@@ -98,7 +98,7 @@ Eigen::Vector3i readVoxel(const LineReader& lines, const Eigen::Vector3i& size) 
   for (std::size_t i = 0; i < 3 && words.size() == 3; ++i) voxel[i] = integerOf(words[i]);
   if (!voxel[0] || !voxel[1] || !voxel[2])
     throw lines.error("is " + shownText(lines.line()), "x y z of an occupied voxel, integers");
-  const Eigen::Vector3i cell(*voxel[0], *voxel[1], *voxel[2]);
+  Eigen::Vector3i cell(*voxel[0], *voxel[1], *voxel[2]);
   if (cell.minCoeff() < 0 || (cell.array() >= size.array()).any()) {
     throw lines.error("voxel " + std::string(lines.line()) + " is outside the map",
                       "0 0 0 to " + std::to_string(size.x() - 1) + " " +

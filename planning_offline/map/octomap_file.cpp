@@ -161,11 +161,12 @@ void collect(const Tree& tree, const typename Tree::NodeType* node, const Cube& 
     return;
   }
   const int half = cube.size / 2;
-  for (unsigned i = 0; i < 8; ++i) {
-    const Eigen::Vector3i step(i & 1U, (i >> 1) & 1U, (i >> 2) & 1U);
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3i step(i & 1, (i >> 1) & 1, (i >> 2) & 1);
+    const auto index = static_cast<unsigned>(i);
     const Cube child{cube.corner + half * step, half, CellState::kUnknown};
-    if (tree.nodeChildExists(node, i)) {
-      collect(tree, tree.getNodeChild(node, i), child, file, cubes);
+    if (tree.nodeChildExists(node, index)) {
+      collect(tree, tree.getNodeChild(node, index), child, file, cubes);
     } else {
       cubes.push_back(child);
     }

@@ -101,9 +101,10 @@ std::string memoryText(double bytes) {
 
 /// A cell size with which the same part of the map fits, if there is one.
 std::optional<double> fittingResolution(const MapSource& source, const LoadOptions& options) {
-  for (double r = roundedUp(source.resolution); r <= kResolutionRange.max;
-       r = roundedUp(1.02 * r)) {
+  double r = roundedUp(source.resolution);
+  while (r <= kResolutionRange.max) {
     if (fits(source, planGrid(source, r, options), options.memory_limit)) return r;
+    r = roundedUp(1.02 * r);
   }
   return std::nullopt;
 }

@@ -142,8 +142,8 @@ TEST(OctomapFile, CropAndSliceKeepTheCellsOfTheWholeGrid) {
   fill(tree, 7);
   const std::string bytes = binaryBytes(tree);
   const VoxelMap whole = folder.load("t.bt", bytes);
-  const Bounds box{whole.origin + Eigen::Vector3d(2.5, 3, 1.25) * kLeaf,
-                   whole.origin + Eigen::Vector3d(7.5, 6, 4) * kLeaf};
+  const Bounds box{whole.origin + Eigen::Vector3d(2.5, 3, 5.25) * kLeaf,
+                   whole.origin + Eigen::Vector3d(12.5, 12, 12) * kLeaf};
   const auto check = [&](const LoadOptions& options, const GridShape& shape,
                          const Eigen::Vector3d& first) {
     const VoxelMap part = folder.load("t.bt", bytes, options);
@@ -156,11 +156,11 @@ TEST(OctomapFile, CropAndSliceKeepTheCellsOfTheWholeGrid) {
   };
   LoadOptions options;
   options.crop = box;
-  check(options, {6, 3, 3}, {2, 3, 1});
-  options.slice = whole.origin.y() + 4.5 * kLeaf;
-  check(options, {6, 1, 3}, {2, 4, 1});
+  check(options, {11, 9, 7}, {2, 3, 5});
+  options.slice = whole.origin.y() + 7.5 * kLeaf;
+  check(options, {11, 1, 7}, {2, 7, 5});
   options.crop.reset();
-  check(options, {whole.shape.nx, 1, whole.shape.nz}, {0, 4, 0});
+  check(options, {whole.shape.nx, 1, whole.shape.nz}, {0, 7, 0});
 }
 
 TEST(OctomapFile, EveryTruncationIsAnErrorAndNothingIsPrinted) {
