@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "common/fields.h"
+#include "planning_offline/map/lattice.h"
 #include "planning_offline/progress.h"
 #include "planning_offline/risk/risk_model.h"
-#include "planning_offline/map/lattice.h"
 
 namespace tautline::planning {
 
@@ -45,7 +45,7 @@ struct PlanOptions {
   double discount{1.0};                  ///< γ of the exact planner's reward, in [0, 1].
   int lookback{3};                       ///< n of `lookback`: 2, 3, 4.
   double time_limit{60.0};               ///< [s]
-  std::int64_t label_limit{50'000'000};  ///< Paths or labels held or enumerated.
+  std::int64_t label_limit{10'000'000};  ///< Paths or labels held or enumerated; about 100 B each.
   std::uint64_t seed{1};
   int threads{0};  ///< 0 = all cores.
 };

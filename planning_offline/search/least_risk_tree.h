@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
+#include "planning_offline/map/lattice.h"
 #include "planning_offline/progress.h"
 #include "planning_offline/risk/risk_model.h"
-#include "planning_offline/map/lattice.h"
 
 namespace tautline::planning {
 
@@ -39,8 +39,8 @@ class LeastRiskTree {
                                                                     CellIndex start,
                                                                     const Progress& progress);
 
-/// The same in integer units for large maps: docs/planning.md, "The fast search". `threads` 0 = all
-/// cores.
+/// The same in whole units for large maps (docs/fast_search.md). Costs that do not fit those are
+/// left to the reference. One thread, whatever `threads` allows; 0 = all cores.
 [[nodiscard]] std::unique_ptr<LeastRiskTree> leastRiskTreeFast(const Lattice& lattice,
                                                                const RiskModel& risk,
                                                                CellIndex start, int threads,

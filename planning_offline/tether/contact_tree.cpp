@@ -44,9 +44,8 @@ StackId ContactTree::push(StackId stack, const ContactKey& key, const Eigen::Vec
   if (!added) return known->second;
   TAUTLINE_CHECK(id < std::numeric_limits<StackId>::max());
   const Node& below = node(stack);
-  const bool straight =
-      stack != kStraight &&
-      distanceToSegment(below.point, node(below.listed).point, point) < grazing_;
+  const bool straight = stack != kStraight &&
+                        distanceToSegment(below.point, node(below.listed).point, point) < grazing_;
   const StackId listed = straight ? below.listed : stack;
   nodes_.push_back({.parent = stack,
                     .listed = listed,

@@ -38,9 +38,8 @@ ConvexEdges::ConvexEdges(const VoxelMap& map, int axis) : axis_(axis) {
     if (map.cells[i] != CellState::kOccupied) continue;
     const Eigen::Vector3i cell = map.shape.cell(static_cast<CellIndex>(i));
     for (int q = 0; q < 4; ++q) {
-      const std::size_t edge =
-          index(cell[axisU(axis)] + ((q & 1) != 0 ? 0 : 1),
-                cell[axisV(axis)] + ((q & 2) != 0 ? 0 : 1), cell[axis]);
+      const std::size_t edge = index(cell[axisU(axis)] + ((q & 1) != 0 ? 0 : 1),
+                                     cell[axisV(axis)] + ((q & 2) != 0 ? 0 : 1), cell[axis]);
       masks_[edge] = static_cast<std::uint8_t>(masks_[edge] | 1U << q);
     }
   }

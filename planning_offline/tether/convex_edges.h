@@ -82,10 +82,4 @@ class ConvexEdges {
   std::vector<std::uint8_t> masks_;  ///< quadrants() in the lower half, joints() in the upper.
 };
 
-/// True if the cell is on the map and occupied.
-[[nodiscard]] inline bool occupied(const VoxelMap& map, const Eigen::Vector3i& cell) noexcept {
-  return map.shape.contains(cell) &&
-         map.cells[static_cast<std::size_t>(map.shape.index(cell))] == CellState::kOccupied;
-}
-
 }  // namespace tautline::planning

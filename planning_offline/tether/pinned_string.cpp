@@ -1,7 +1,10 @@
 #include "planning_offline/tether/pinned_string.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include <Eigen/Geometry>
 
 #include "common/error.h"
 #include "planning_offline/tether/grid_triangle.h"
@@ -11,13 +14,15 @@ namespace tautline::planning {
 namespace {
 
 constexpr int kNoAxis = -1;
+// Lengths in cells, unless said otherwise. Why each is needed: docs/taut_string.md.
 constexpr double kQuantum = 0x1p-30;  // of a contact's place along its edge
-constexpr double kGrazing = 1e-5;     // a contact nearer to its neighbours' chord is the perturbation's
-constexpr double kTogether = 1e-12;   // parts of a way: meetings on one face are at once
+constexpr double kGrazing = 1e-5;     // a contact nearer to its neighbours' chord is straight
+constexpr double kTogether = 1e-12;   // parts of a way: edges on one face are met at once
 constexpr double kTurning = 1e-12;    // sine below which a string does not turn in a projection
 constexpr double kSame = 1e-11;       // an edge so near to the anchor goes through it
+constexpr double kRounding = 1e-13;   // of differences of coordinates
 constexpr double kTouching = 1e-9;    // sine up to which a string lies in a face
-constexpr double kAtEnd = 1e-9;       // of the free length: edges met by the very end of the string
+constexpr double kAtEnd = 1e-9;       // of the free length: an edge is met by the string's very end
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -51,10 +56,11 @@ StackId PinnedString::push(StackId stack, const Meeting& meeting) {
     point[edge.axis] = meeting.place;
     return point;
   };
-  const StackId id = tree().push(
-      stack,
-      {.edge = edge.packed(), .place = std::llround(meeting.place / kQuantum), .turn = meeting.turn},
-      origin_ + resolution_ * placed(Eigen::Vector2d(edge.u, edge.v)));
+  const StackId id = tree().push(stack,
+                                 {.edge = edge.packed(),
+                                  .place = std::llround(meeting.place / kQuantum),
+                                  .turn = meeting.turn},
+                                 origin_ + resolution_ * placed(Eigen::Vector2d(edge.u, edge.v)));
   if (id == anchors_.size()) anchors_.push_back(placed(solid_.across(edge)));
   return id;
 }
@@ -114,7 +120,7 @@ void PinnedString::meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Ve
       const double reach = alpha + beta;
       if (!(alpha > 0.0 && reach <= 1.0 + kAtEnd && beta >= -kTogether * reach)) continue;
       // The obstacle must lie ahead of the turning string.
-      const double slack = kTouching * r.norm();
+      const double slack = kTouching * r.norm() + kRounding;
       if (turn * edge.sideU() * r.y() > slack || turn * edge.sideV() * r.x() < -slack) continue;
       const double part = std::max(beta / reach, 0.0);
       const bool earlier = !first || part < first->part - kTogether;
@@ -185,6 +191,19 @@ StackId PinnedString::move(StackId stack, const Eigen::Vector3d& from, const Eig
   const Eigen::Vector3d q = cellsOf(to);
   const std::optional<StackId> direct = drag(stack, p, q);
   if (direct && free(*direct, q)) return *direct;
+  // Two events came too close to each other to be told apart: not so a little aside.
+  const std::array<Eigen::Vector3d, 6> asides{{{3e-4, 1e-4, -2e-4},
+                                               {-2e-4, 3e-4, 1e-4},
+                                               {-1e-4, -2e-4, -3e-4},
+                                               {2e-4, -1e-4, 3e-4},
+                                               {-3e-4, 2e-4, -1e-4},
+                                               {1e-4, -3e-4, 2e-4}}};
+  for (const Eigen::Vector3d& aside : asides) {
+    const Eigen::Vector3d via = 0.5 * (p + q) + aside;
+    const std::optional<StackId> half = drag(stack, p, via);
+    const std::optional<StackId> whole = half ? drag(*half, via, q) : std::nullopt;
+    if (whole && free(*whole, q)) return *whole;
+  }
   ++unresolved_;
   return direct.value_or(stack);
 }

@@ -64,8 +64,7 @@ class PinnedString final : public TreeString {
                                               const Leg& leg) const;
   /// First edge that the string from c meets while its end goes from p along the leg.
   [[nodiscard]] std::optional<Meeting> firstMeeting(const Eigen::Vector3d& c,
-                                                    const Eigen::Vector3d& p,
-                                                    const Leg& leg) const;
+                                                    const Eigen::Vector3d& p, const Leg& leg) const;
   void meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
                  const Eigen::Vector3d& q, std::optional<Meeting>& first) const;
 
@@ -76,7 +75,7 @@ class PinnedString final : public TreeString {
   double resolution_;
   ShrunkSolid solid_;
   std::vector<Eigen::Vector3d> anchors_;  ///< By stack: its last contact on the shrunk edge.
-  std::vector<Leg> legs_;              ///< Ways still to go, the next one last; kept for its memory.
+  std::vector<Leg> legs_;  ///< Ways still to go, the next one last; kept for its memory.
   std::vector<std::uint8_t> checked_;  ///< By stack: all of the string below its last contact is
                                        ///< known to be free.
   std::int64_t unresolved_{0};

@@ -12,7 +12,7 @@ namespace {
 using Fine = Eigen::Matrix<std::int64_t, 2, 1>;
 
 constexpr int kY = 1;
-constexpr std::int64_t kCell = 1024;  // power of two: rounding and grid points are exact
+constexpr std::int64_t kCell = 1024;         // power of two: rounding and grid points are exact
 static_assert(kFarthest * kCell < 1 << 29);  // so that sums of two products are below 2^62
 
 std::int64_t cross(const Fine& a, const Fine& b) { return a.x() * b.y() - a.y() * b.x(); }

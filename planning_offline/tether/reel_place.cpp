@@ -3,10 +3,15 @@
 #include <sstream>
 
 #include "common/error.h"
-#include "planning_offline/tether/convex_edges.h"
 
 namespace tautline::planning {
 namespace {
+
+/// `cell` may be outside the map.
+bool occupied(const VoxelMap& map, const Eigen::Vector3i& cell) {
+  return map.shape.contains(cell) &&
+         map.cells[static_cast<std::size_t>(map.shape.index(cell))] == CellState::kOccupied;
+}
 
 /// `p` in cells.
 bool inside(const VoxelMap& map, const Eigen::Vector3d& p) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace tautline::planning {
 namespace {
@@ -44,7 +43,7 @@ bool cutsCorner(const Eigen::Vector3d& normal, const ConvexEdge& edge, int side)
                                      edge.sideV() * normal[axisV(edge.axis)],
                                      side * normal[edge.axis]};
   const auto [low, high] = std::minmax_element(slopes.begin(), slopes.end());
-  return *low < -least && *high > least;
+  return *low<-least&& * high> least;
 }
 
 }  // namespace
@@ -77,8 +76,7 @@ bool ShrunkSolid::has(const ConvexEdge& edge, double w,
   }
   const double low = plane(edge.axis, k, false);
   const double high = plane(edge.axis, k, true);
-  const bool joint =
-      k < all.sizeW() && (all.joints(edge.u, edge.v, k) >> edge.quadrant & 1U) != 0;
+  const bool joint = k < all.sizeW() && (all.joints(edge.u, edge.v, k) >> edge.quadrant & 1U) != 0;
   if (joint && low - kStops <= w && w <= high + kStops) return true;
   const bool wall = solid(edge, k - 1) && solid(edge, k);
   const auto over = [&](int side) {

@@ -17,9 +17,7 @@ class TreeString : public TautString {
  public:
   [[nodiscard]] const Eigen::Vector3d& reel() const noexcept final { return reel_; }
   [[nodiscard]] Eigen::Vector3d anchor(StackId stack) const final { return tree_.point(stack); }
-  [[nodiscard]] double staticLength(StackId stack) const final {
-    return tree_.staticLength(stack);
-  }
+  [[nodiscard]] double staticLength(StackId stack) const final { return tree_.staticLength(stack); }
   [[nodiscard]] int contactCount(StackId stack) const final { return tree_.count(stack); }
   [[nodiscard]] std::vector<Eigen::Vector3d> contacts(StackId stack) const final {
     return tree_.contacts(stack);

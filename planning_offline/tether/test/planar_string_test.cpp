@@ -83,10 +83,11 @@ TEST(PlanarString, EqualsTheTightenedPathOnRandomWalksOverCells) {
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
     walks::Random random(seed);
     const GridShape shape{6 + static_cast<int>(seed % 7), 1, 6 + static_cast<int>(seed / 7 % 7)};
-    const VoxelMap map = seed % 3 == 0 ? walks::boxesMap(shape, 6, 3, random)
-                                       : walks::clutteredMap(shape, 4 + static_cast<int>(seed % 8), random);
-    const Lattice lattice = walks::freeLattice(
-        map, seed % 2 == 0 ? Connectivity::kFaces : Connectivity::kVertices);
+    const VoxelMap map = seed % 3 == 0
+                             ? walks::boxesMap(shape, 6, 3, random)
+                             : walks::clutteredMap(shape, 4 + static_cast<int>(seed % 8), random);
+    const Lattice lattice =
+        walks::freeLattice(map, seed % 2 == 0 ? Connectivity::kFaces : Connectivity::kVertices);
     const std::vector<CellIndex> walk = walks::randomWalk(lattice, 80, random);
     if (walk.empty()) continue;
     const std::unique_ptr<TautString> string = makeTautString(map, map.centre(walk.front()));
@@ -110,8 +111,9 @@ std::vector<BandPoint> longWalk(const VoxelMap& map, const BandPoint& start, int
                                 walks::Random& random) {
   std::vector<BandPoint> path{start};
   for (int tries = 0; tries < 60 * moves && static_cast<int>(path.size()) <= moves; ++tries) {
-    BandPoint p{static_cast<std::int64_t>(random() % (1024U * static_cast<unsigned>(map.shape.nz))),
-                static_cast<std::int64_t>(random() % (1024U * static_cast<unsigned>(map.shape.nx)))};
+    BandPoint p{
+        static_cast<std::int64_t>(random() % (1024U * static_cast<unsigned>(map.shape.nz))),
+        static_cast<std::int64_t>(random() % (1024U * static_cast<unsigned>(map.shape.nx)))};
     if (random() % 3 == 0) p.u = path.back().u;
     if (random() % 4 == 0) p.u = p.u / 1024 * 1024;
     if (random() % 4 == 0) p.v = p.v / 1024 * 1024;
@@ -130,14 +132,14 @@ TEST(PlanarString, EqualsTheTightenedPathOnLongMovesAndInPieces) {
         walks::randomWalk(walks::freeLattice(map, Connectivity::kFaces), 0, random);
     if (start.empty()) continue;
     PlanarString string(map, map.centre(start.front()));
-    const std::vector<BandPoint> path =
-        longWalk(map, bandPoint(map, string.reel()), 12, random);
+    const std::vector<BandPoint> path = longWalk(map, bandPoint(map, string.reel()), 12, random);
     StackId stack = kStraight;
     for (std::size_t i = 1; i < path.size(); ++i) {
       const Eigen::Vector3d from = pointOf(map, path[i - 1]);
       const Eigen::Vector3d to = pointOf(map, path[i]);
       // In two halves, if the middle is a point of the fine grid.
-      const bool even = (path[i].u + path[i - 1].u) % 2 == 0 && (path[i].v + path[i - 1].v) % 2 == 0;
+      const bool even =
+          (path[i].u + path[i - 1].u) % 2 == 0 && (path[i].v + path[i - 1].v) % 2 == 0;
       const Eigen::Vector3d middle = 0.5 * (from + to);
       const StackId halved =
           even ? string.move(string.move(stack, from, middle), middle, to) : kStraight;
@@ -169,6 +171,27 @@ TEST(PlanarString, IsBackAtTheStartStackAfterTheWayBack) {
     for (std::size_t i = walk.size() - 1; i > 0; --i) {
       stack = string.move(stack, walk[i], walk[i - 1]);
       ASSERT_EQ(stack, stacks[i - 1]) << "seed " << seed;
+    }
+  }
+}
+
+TEST(PlanarString, EndsOnMovesThroughObstaclesToo) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    walks::Random random(seed);
+    const VoxelMap map = walks::clutteredMap({12, 1, 12}, 5, random);
+    Eigen::Vector3d at =
+        walks::centres(map,
+                       walks::randomWalk(walks::freeLattice(map, Connectivity::kFaces), 0, random))
+            .front();
+    PlanarString string(map, at);
+    StackId stack = kStraight;
+    for (int i = 0; i < 60; ++i) {
+      // Grid points and middles of sides, where ties abound.
+      const auto half = [&random] { return 0.25 * static_cast<double>(random() % 25); };
+      const Eigen::Vector3d to = map.origin + Eigen::Vector3d(half(), 0.25, half());
+      stack = string.move(stack, at, to);
+      at = to;
+      ASSERT_TRUE(std::isfinite(string.length(stack, at)));
     }
   }
 }

@@ -1,0 +1,102 @@
+#include "planning_offline/planner/traverse.h"
+
+#include "common/error.h"
+#include "planning_offline/field/line_of_sight.h"
+#include "planning_offline/search/components.h"
+
+namespace tautline::planning {
+namespace {
+
+constexpr std::size_t kMovesKept = 4'000'000;  // then all are forgotten; 80 MB at most
+
+}  // namespace
+
+Traverse::Traverse(const RiskModel& risk)
+    : risk_(&risk),
+      rate_(risk.params().mode == RiskMode::kRate),
+      tethered_(risk.hasTether()),
+      muddy_(isOn(risk.params(), RiskElement::kSlippage)),
+      draining_(isOn(risk.params(), RiskElement::kBattery)) {}
+
+TraverseState Traverse::start(CellIndex cell) const {
+  TraverseState state;
+  if (tethered_) {
+    TautString& string = *risk_->string();
+    state.stack = string.move(kStraight, string.reel(), risk_->map().centre(cell));
+  }
+  return state;
+}
+
+double Traverse::startCost(CellIndex cell) const {
+  return risk_->startCost(cell) + risk_->startShare(stateCost(start(cell), cell));
+}
+
+double Traverse::stateCost(const TraverseState& state, CellIndex cell) const {
+  return (tethered_ ? tetherCost(state.stack, cell) : 0.0) +
+         (summing() ? risk_->accumulatorCost(state.sums, cell) : 0.0);
+}
+
+double Traverse::tetherCost(StackId stack, CellIndex cell) const {
+  const TautString& string = *risk_->string();
+  const Eigen::Vector3d position = risk_->map().centre(cell);
+  if (!risk_->elevationAllowed(string.anchor(stack), position)) return kInfiniteCost;
+  return risk_->tetherCost(string.length(stack, position), string.contactCount(stack));
+}
+
+double Traverse::step(TraverseState& state, CellIndex u, Direction incoming, Direction d,
+                      CellIndex v) {
+  const double cost = risk_->stepCost(u, incoming, d, v);
+  if (!active() || !(cost < kInfiniteCost)) return cost;
+  const double metres = stepLength(d) * risk_->map().resolution;
+  const double before = rate_ ? stateCost(state, u) : 0.0;  // per state nothing asks for it
+  if (tethered_) state.stack = moveString(state.stack, u, d, v);
+  if (summing()) {
+    // What nothing looks at must not tell labels apart.
+    const Accumulators sums = risk_->advance(state.sums, u, v, metres);
+    if (muddy_) state.sums.mud = sums.mud;
+    if (draining_) state.sums.energy = sums.energy;
+  }
+  return cost + risk_->overStep(before, stateCost(state, v), metres);
+}
+
+StackId Traverse::moveString(StackId stack, CellIndex u, Direction d, CellIndex v) {
+  constexpr StackId kStacks = StackId{1} << 28;  // more do not fit into keys, nor into memory
+  if (moves_.size() >= kMovesKept) moves_.clear();
+  const FlatIndex::Key key = static_cast<FlatIndex::Key>(stack) << 36 |
+                             static_cast<FlatIndex::Key>(u) << 5 | static_cast<FlatIndex::Key>(d);
+  StackId& next = moves_[key];
+  if (next == FlatIndex::kNew) {
+    next = risk_->string()->move(stack, risk_->map().centre(u), risk_->map().centre(v));
+    TAUTLINE_CHECK(next < kStacks);
+  }
+  return next;
+}
+
+double Traverse::tetherBound(CellIndex v, Direction d) {
+  if (!tethered_) return 0.0;
+  const GridShape& shape = risk_->map().shape;
+  const CellIndex u = shape.index(shape.cell(v) - stepOf(d));
+  const double before = rate_ ? leastTetherCost(u) : 0.0;
+  if (!(before < kInfiniteCost)) return kInfiniteCost;
+  return risk_->overStep(before, leastTetherCost(v), stepLength(d) * risk_->map().resolution);
+}
+
+double Traverse::leastTetherCost(CellIndex cell) {
+  const VoxelMap& map = risk_->map();
+  if (sees_reel_.empty()) {
+    sees_reel_.assign(map.shape.size(), -1);
+    occupied_.reserve(map.shape.size());
+    for (const CellState state : map.cells) occupied_.push_back(state == CellState::kOccupied);
+  }
+  const Eigen::Vector3d& reel = risk_->string()->reel();
+  const Eigen::Vector3d position = map.centre(cell);
+  std::int8_t& seen = sees_reel_[static_cast<std::size_t>(cell)];
+  if (seen < 0) {
+    seen = static_cast<std::int8_t>(lineOfSight(map.shape, occupied_,
+                                                (reel - map.origin) / map.resolution,
+                                                (position - map.origin) / map.resolution));
+  }
+  return risk_->tetherCost((position - reel).norm(), seen != 0 ? 0 : 1);
+}
+
+}  // namespace tautline::planning

@@ -1,0 +1,153 @@
+// Time of one step of the taut string on random maps, and, by turns with it, of one look at every
+// convex edge of the map against the triangle of that step: what a string without an index would
+// do at least once a step.
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "planning_offline/tether/convex_edges.h"
+#include "planning_offline/tether/taut_string.h"
+#include "planning_offline/tether/test/walks.h"
+
+namespace tautline::planning {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::time_point since) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - since).count();
+}
+
+/// A unit edge: across its axis, and where it begins along it. In cells.
+struct UnitEdge {
+  Eigen::Vector2d at;
+  int w;
+  int axis;
+};
+
+std::vector<UnitEdge> allEdges(const VoxelMap& map) {
+  std::vector<UnitEdge> list;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (map.shape.planar() && axis != 1) continue;
+    const ConvexEdges edges(map, axis);
+    for (int w = 0; w < edges.sizeW(); ++w) {
+      for (int v = 0; v <= edges.sizeV(); ++v) {
+        for (int u = 0; u <= edges.sizeU(); ++u) {
+          if (edges.quadrants(u, v, w) != 0) list.push_back({Eigen::Vector2d(u, v), w, axis});
+        }
+      }
+    }
+  }
+  return list;
+}
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Edges that go through the triangle.
+int hits(const std::vector<UnitEdge>& edges, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
+         const Eigen::Vector3d& q) {
+  int count = 0;
+  for (const UnitEdge& edge : edges) {
+    const int u = axisU(edge.axis);
+    const int v = axisV(edge.axis);
+    const Eigen::Vector2d to_p(p[u] - c[u], p[v] - c[v]);
+    const Eigen::Vector2d to_q(q[u] - c[u], q[v] - c[v]);
+    const Eigen::Vector2d r = edge.at - Eigen::Vector2d(c[u], c[v]);
+    const double area = cross(to_p, to_q);
+    const double alpha = cross(r, to_q);
+    const double beta = cross(to_p, r);
+    if (alpha * area <= 0.0 || beta * area < 0.0 || (alpha + beta - area) * area >= 0.0) continue;
+    const double w =
+        c[edge.axis] +
+        (alpha * (p[edge.axis] - c[edge.axis]) + beta * (q[edge.axis] - c[edge.axis])) / area;
+    count += w >= edge.w && w <= edge.w + 1 ? 1 : 0;
+  }
+  return count;
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void walkAll(benchmark::State& state, const GridShape& shape) {
+  walks::Random random(1);
+  const VoxelMap map = walks::clutteredMap(shape, static_cast<int>(state.range(1)), random);
+  const Lattice lattice = walks::freeLattice(map, Connectivity::kVertices);
+  const std::vector<UnitEdge> edges = allEdges(map);
+  std::vector<double> steps;
+  std::vector<double> scans;
+  double steps_sum = 0.0;
+  double contacts = 0.0;
+  double length = 0.0;
+  std::int64_t unresolved = 0;
+  for (auto _ : state) {
+    const std::vector<Eigen::Vector3d> walk =
+        walks::centres(map, walks::randomWalk(lattice, 400, random));
+    const std::unique_ptr<TautString> string = makeTautString(map, walk.front());
+    StackId stack = kStraight;
+    for (std::size_t i = 1; i < walk.size(); ++i) {
+      const Eigen::Vector3d anchor = string->anchor(stack);
+      const Clock::time_point step = Clock::now();
+      stack = string->move(stack, walk[i - 1], walk[i]);
+      steps.push_back(microseconds(step));
+      steps_sum += steps.back();
+      contacts += string->contactCount(stack);
+      length += string->length(stack, walk[i]) / map.resolution;
+      if (i % 16 != 0) continue;
+      const auto cells = [&map](const Eigen::Vector3d& p) {
+        return Eigen::Vector3d((p - map.origin) / map.resolution);
+      };
+      const Clock::time_point scan = Clock::now();
+      benchmark::DoNotOptimize(hits(edges, cells(anchor), cells(walk[i - 1]), cells(walk[i])));
+      scans.push_back(microseconds(scan));
+    }
+    unresolved += string->unresolvedMoves();
+  }
+  const auto count = static_cast<double>(steps.size());
+  const double step = median(steps);
+  const double scan = median(scans);
+  state.counters["step_median_us"] = step;
+  state.counters["step_mean_us"] = steps_sum / count;
+  state.counters["step_p99_us"] = [&steps] {
+    const auto at = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() * 99 / 100);
+    std::nth_element(steps.begin(), at, steps.end());
+    return *at;
+  }();
+  state.counters["scan_median_us"] = scan;
+  state.counters["scan_per_step"] = scan / step;
+  state.counters["edges"] = static_cast<double>(edges.size());
+  state.counters["contacts"] = contacts / count;
+  state.counters["length_cells"] = length / count;
+  state.counters["unresolved"] = static_cast<double>(unresolved);
+}
+
+void BM_PlanarStep(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  walkAll(state, {side, 1, side});
+}
+BENCHMARK(BM_PlanarStep)
+    ->Args({100, 8})
+    ->Args({400, 50})
+    ->Iterations(40)
+    ->Unit(benchmark::kMillisecond);
+
+void BM_SpaceStep(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  walkAll(state, {side, side, side});
+}
+BENCHMARK(BM_SpaceStep)
+    ->Args({40, 8})
+    ->Args({100, 50})
+    ->Iterations(20)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tautline::planning
