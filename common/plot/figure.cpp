@@ -219,6 +219,10 @@ class PanelScript {
     }
     for (const auto& polygon : panel.polygons) addPolygon(polygon);
     for (const auto& series : panel.series) addSeries(series);
+    // gnuplot shows the colour bar only of something drawn by value: a line that is out of sight.
+    if (panel.value_limits && !has_values_ && !panel.legend_only) {
+      addCurve("-1e30 -1e30 0\n", "1:2:3", "with lines lc palette", {});
+    }
     for (const auto& marker : panel.markers) addMarker(marker);
     for (const auto& mark : panel.marks) addMark(mark);
   }

@@ -136,8 +136,12 @@ ExitCode runFields(const FieldsArguments& arguments) {
   TerminalProgress terminal;
   const RiskSpace space = loadRiskSpace(arguments.risk, terminal.progress());
   const VoxelMap& map = *space.space.map;
-  FieldRequest request = neededFields(space.risk->params(), map);
-  request.distance = request.width = request.visibility = true;
+  const VisibilityParams& visibility = space.risk->params().visibility;
+  const FieldRequest request{.distance = true,
+                             .width = true,
+                             .visibility = true,
+                             .visibility_directions = visibility.directions,
+                             .visibility_cap = visibility.cap};
   const MapFields fields =
       computeFields(map, withMapArguments(request, arguments.risk.map), terminal.progress());
   terminal.clear();

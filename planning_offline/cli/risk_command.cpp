@@ -72,7 +72,8 @@ std::vector<Eigen::Vector3d> readPath(const std::string& file) {
     for (char& c : line) c = c == ',' || c == '\r' ? ' ' : c;
     std::istringstream fields(line);
     Eigen::Vector3d p;
-    if (!(fields >> std::ws)) continue;
+    fields >> std::ws;
+    if (fields.eof()) continue;
     if (!(fields >> p.x() >> p.y() >> p.z()) || !p.allFinite() || !(fields >> std::ws).eof()) {
       throw InputError({.file = file,
                         .line = number,

@@ -5,11 +5,10 @@
 #include <utility>
 
 #include "common/error.h"
+#include "planning_offline/planner/budget.h"
 
 namespace tautline::planning {
 namespace {
-
-constexpr CellIndex kAskEvery = 1024;  // cells between two looks at Progress
 
 double ratioOf(double reward, double risk) {
   if (reward <= 0.0) return 0.0;
@@ -101,13 +100,17 @@ std::optional<GoalChoice> chooseGoal(const PlanProblem& problem, const PlanOptio
     }
   };
   consider(problem.start);
-  for (CellIndex cell = 0; cell < cells; ++cell) {
-    if (cell % kAskEvery == 0) {
-      if (progress.cancelled()) break;
-      progress.report("choosing the goal", static_cast<double>(cell) / cells);
+  // Ends with a reward first: another end is rarely better, and time may be short.
+  Budget budget(options, progress);
+  for (const bool rewarded : {true, false}) {
+    for (CellIndex cell = 0; cell < cells; ++cell) {
+      if (budget.spent(0, "choosing the goal")) break;
+      const bool has =
+          !problem.reward.empty() && problem.reward[static_cast<std::size_t>(cell)] > 0.0;
+      if (cell != problem.start && has == rewarded && problem.lattice->free(cell)) consider(cell);
     }
-    if (cell != problem.start && problem.lattice->free(cell)) consider(cell);
   }
+  if (best) best->cut = budget.reason();
   return best;
 }
 

@@ -24,11 +24,13 @@ struct GoalChoice {
   CellIndex goal{kNoCell};
   std::vector<CellIndex> path;
   double utility{0.0};
+  const char* cut{nullptr};  ///< What stopped the choosing early; null: nothing.
 };
 
 /// The cell whose best path has the greatest utility by options.objective among those within
-/// options.risk_cap. Staying at the start is one of them. Ties: less risk, then the lower cell.
-/// Empty if no path is within the cap. Returns the best so far when cancelled.
+/// options.risk_cap. Staying at the start is one of them. Ties: less risk, then ends with a reward,
+/// then the lower cell. Empty if no path is within the cap. Returns the best so far when cancelled
+/// or after options.time_limit.
 [[nodiscard]] std::optional<GoalChoice> chooseGoal(const PlanProblem& problem,
                                                    const PlanOptions& options,
                                                    const PathsToAll& paths,

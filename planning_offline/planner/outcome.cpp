@@ -65,6 +65,7 @@ PlanResult concludeAll(const PlanProblem& problem, const PlanOptions& options,
   PlanResult result;
   std::optional<GoalChoice> choice = chooseGoal(problem, options, found.paths, progress);
   const char* cut = progress.cancelled() ? "cancelled" : found.cut;
+  if (cut == nullptr && choice) cut = choice->cut;
   if (choice) {
     result.path = std::move(choice->path);
     describePath(problem, options, result);

@@ -1,7 +1,6 @@
 #include "planning_offline/planner/traverse.h"
 
 #include "common/error.h"
-#include "planning_offline/field/line_of_sight.h"
 #include "planning_offline/search/components.h"
 
 namespace tautline::planning {
@@ -82,21 +81,9 @@ double Traverse::tetherBound(CellIndex v, Direction d) {
 }
 
 double Traverse::leastTetherCost(CellIndex cell) {
-  const VoxelMap& map = risk_->map();
-  if (sees_reel_.empty()) {
-    sees_reel_.assign(map.shape.size(), -1);
-    occupied_.reserve(map.shape.size());
-    for (const CellState state : map.cells) occupied_.push_back(state == CellState::kOccupied);
-  }
   const Eigen::Vector3d& reel = risk_->string()->reel();
-  const Eigen::Vector3d position = map.centre(cell);
-  std::int8_t& seen = sees_reel_[static_cast<std::size_t>(cell)];
-  if (seen < 0) {
-    seen = static_cast<std::int8_t>(lineOfSight(map.shape, occupied_,
-                                                (reel - map.origin) / map.resolution,
-                                                (position - map.origin) / map.resolution));
-  }
-  return risk_->tetherCost((position - reel).norm(), seen != 0 ? 0 : 1);
+  if (!contact_bound_) contact_bound_.emplace(risk_->map(), reel);
+  return risk_->tetherCost((risk_->map().centre(cell) - reel).norm(), contact_bound_->at(cell));
 }
 
 }  // namespace tautline::planning

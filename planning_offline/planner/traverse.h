@@ -5,7 +5,10 @@
 /// what each step costs with it, in O(1). Hard limits of the tether are infinite costs. Not
 /// real-time safe: offline only.
 
+#include <optional>
+
 #include "planning_offline/map/lattice.h"
+#include "planning_offline/planner/contact_bound.h"
 #include "planning_offline/planner/flat_index.h"
 #include "planning_offline/risk/risk_model.h"
 
@@ -37,7 +40,7 @@ class Traverse {
                             CellIndex v);
 
   /// Lower bound of what tether elements cost for the step in direction d to v, whatever the path:
-  /// the string is no shorter than a straight line, and has a contact where that line is blocked.
+  /// the string is no shorter than a straight line and has the contacts of ContactBound.
   [[nodiscard]] double tetherBound(CellIndex v, Direction d);
 
  private:
@@ -54,8 +57,7 @@ class Traverse {
   bool muddy_;
   bool draining_;
   FlatIndex moves_;
-  std::vector<std::uint8_t> occupied_;  // one byte a cell, for lines of sight
-  std::vector<std::int8_t> sees_reel_;  // one a cell: 1, 0, or -1 = not asked yet
+  std::optional<ContactBound> contact_bound_;  // made when first asked for
 };
 
 }  // namespace tautline::planning

@@ -46,5 +46,16 @@ TEST(Raster, PixelsAreWrittenAtTheirCentres) {
   EXPECT_NE(script.find("set xrange [10:14]"), std::string::npos) << script;
 }
 
+// The colours of an image are explained by a colour bar, though nothing else is drawn by value.
+TEST(Raster, ValueLimitsAloneShowTheColourBar) {
+  Panel panel;
+  panel.title = "field";
+  panel.value_label = "distance [m]";
+  panel.value_limits = Limits{0.0, 3.0};
+  const std::string script = gnuplotScript({.panels = {panel}});
+  EXPECT_NE(script.find("set cbrange [0:3]"), std::string::npos);
+  EXPECT_NE(script.find("with lines lc palette"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tautline::plot

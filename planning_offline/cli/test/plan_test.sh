@@ -84,10 +84,10 @@ holds "no planner that knows the tether risks more than one that does not" "j[0]
   "$plan" compare --map "$room" --goal 3.5,1.1,3.5 --planners additive,directional,tether --json
 holds "the planner may choose the goal" "j['reward'] == 1.0 and abs(j['utility'] - 1 / j['risk']) < 1e-9" \
   "$plan" plan --map "$room" --planner directional --json
-holds "the same seed gives the same roadmap" "j['status'] != 'none'" "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --planner prm --seed 3 --json
+holds "the same seed gives the same roadmap" "j['status'] != 'none'" "$plan" plan --map "$room" --goal 3.5,1.1,1.1 --planner prm --seed 3 --json
 python3 -c "import json; print(json.load(open('$work/out'))['path'])" >"$work/first"
 holds "the same seed gives the same roadmap" "str(j['path']) == open('$work/first').read().strip()" \
-  "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --planner prm --seed 3 --json
+  "$plan" plan --map "$room" --goal 3.5,1.1,1.1 --planner prm --seed 3 --json
 holds "why" "abs(sum(s['share'] for s in j['shares']) - 1) < 1e-9 and j['runner_up']['risk'] >= j['plan']['risk']" \
   "$plan" why --map "$room" --goal 3.5,1.1,3.5 --json
 holds "reach" "j['free'] > j['straight'] > 0 and j['with_contacts'] == j['free'] and abs(j['straight'] / j['free'] - j['straight_fraction']) < 1e-12" \
@@ -108,7 +108,7 @@ EOF
 )) < 1e-6" "$plan" risk --map "$room" --path "$work/p.mission.toml" --json
 
 # Ctrl-C keeps the best so far.
-"$plan" plan --map "$room" --resolution 0.1 --planner exact --goal 3.5,1.1,3.5 --time-limit-s 100 --json >"$work/out" 2>"$work/err" &
+"$plan" plan --map "$room" --planner exact --time-limit-s 100 --json >"$work/out" 2>"$work/err" &
 pid=$!
 sleep 3
 kill -INT $pid
@@ -126,13 +126,13 @@ expect 2 '--goal.*inside an obstacle' "$plan" plan --map "$room" --goal 2,1,2
 expect 2 '--goal.*nearer than 0.5 m' "$plan" plan --map "$room" --clearance 0.5 --goal 3.9,1,3.9 --start 1.1,1.1,1.1
 expect 2 "--start: is '1,2'; allowed: x,y,z" "$plan" plan --map "$room" --start 1,2 --goal 3.5,1.1,3.5
 expect 2 '--goal.*no rewards' "$plan" plan --map "$config/scenes/open.scene.toml"
-expect 2 "planner.*'nosuch'.*directional" "$plan" plan --map "$room" --planner nosuch
+expect 2 'planner: there is no planner "nosuch".*directional' "$plan" plan --map "$room" --planner nosuch
 expect 5 'nowhere.bt' "$plan" plan --map nowhere.bt --start 1,1,1 --goal 2,2,2
 printf 'not a map at all\n' >"$work/bad.bt"
 expect 5 'bad.bt' "$plan" reach --map "$work/bad.bt" --reel 0,0,0
 printf 'version = 1\nname = "x"\n' >"$work/short.scene.toml"
 expect 5 'short.scene.toml.*min_m' "$plan" fields --map "$work/short.scene.toml"
-expect 5 'MB|GB|bytes' "$plan" fields --map "$room" --resolution 0.0005
+expect 5 'need .*MiB; allowed: at most 10 MiB' "$plan" fields --map "$room" --resolution 0.01 --memory-mb 10
 expect 5 'rewards.*outside the map' "$plan" plan --map "$room" --rewards <(printf '[[rewards]]\nposition_m = [9, 9, 9]\nvalue = 1\n')
 printf '[contacts]\neach = 1.5\n' >"$work/params.toml"
 expect 5 'params.toml:2: contacts.each.*1.5.*0 to 1' "$plan" plan --map "$room" --params "$work/params.toml"
@@ -140,8 +140,8 @@ printf '[tether]\neach = 0.5\n' >"$work/params.toml"
 expect 5 'params.toml:1.*tether' "$plan" plan --map "$room" --params "$work/params.toml"
 printf 'elements = [[0.1, 0.2], [1.5]]\n' >"$work/table.toml"
 expect 5 'table.toml:1: elements.*1.5' "$plan" risk --table "$work/table.toml"
-printf '1 1 1\n1 x 1\n' >"$work/path.txt"
-expect 5 'path.txt:2' "$plan" risk --map "$room" --path "$work/path.txt"
+printf '# x y z\n\n1 1 1\n1 x 1\n' >"$work/path.txt"
+expect 5 'path.txt:4' "$plan" risk --map "$room" --path "$work/path.txt"
 printf '1 1 1\n2 1 2\n' >"$work/path.txt"
 expect 5 'path.txt: point 1.*not in the free space' "$plan" risk --map "$room" --path "$work/path.txt"
 code=1

@@ -11,7 +11,7 @@
 namespace tautline::planning {
 namespace {
 
-constexpr std::size_t kTableLimit = std::size_t{1} << 24;  // entries: 64 MB
+constexpr std::size_t kTableLimit = std::size_t{1} << 22;  // entries: a few seconds of search
 
 /// Backward search over the least that each step may cost, whatever came before: how cheaply a cell
 /// can be reached from any other.

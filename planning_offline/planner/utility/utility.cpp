@@ -20,8 +20,8 @@ namespace tautline::planning {
 namespace {
 
 constexpr std::size_t kBeamWidth = 200;
-constexpr std::size_t kSetLimit = 4096;         // bits of a visited set that are worth searching
-constexpr std::size_t kSparse = 4;              // cells a reward from which on walks come first
+constexpr std::size_t kSetLimit = 4096;        // bits of a visited set that are worth searching
+constexpr std::size_t kSparse = 4;             // cells a reward from which on walks come first
 constexpr std::int64_t kFrontLabels = 50'000;  // of the search for the exact front
 
 /// One run of the planner: ever better candidates, and an ever lower bound.
@@ -91,7 +91,7 @@ void UtilityRun::findIncumbent() {
     found_.offer(end.so_far, [&] { return path; });
   };
   if (rewards_.withinCap(start) && rewards_.mayEndAt(start.cell)) offer(start, {start.cell});
-  const PlanResult two_stage = makeUtilityTwoStage()->plan(problem_, options_, progress_);
+  const PlanResult two_stage = makeUtilityTwoStage()->plan(problem_, limits(0.2), progress_);
   if (!two_stage.simple) {
     two_stage_walk_ = two_stage.utility;
   } else if (two_stage) {
