@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,40 @@
 #include "planning_offline/search/test/small_world.h"
 
 namespace tautline::planning::testing {
+
+/// Rows of a planar map from its far side (large z) to its near one: '#' occupied, 'm' muddy,
+/// 'd' dark (of high locale risk), 's' the start.
+inline SmallWorld picture(const std::vector<std::string>& rows, Connectivity connectivity) {
+  const GridShape shape{static_cast<int>(rows[0].size()), 1, static_cast<int>(rows.size())};
+  SmallWorld world = emptyWorld(shape, connectivity);
+  MapLayer mud{"slippage", std::vector<double>(shape.size(), 0.0)};
+  MapLayer dark{"surface", std::vector<double>(shape.size(), 0.0)};
+  for (int z = 0; z < shape.nz; ++z) {
+    for (int x = 0; x < shape.nx; ++x) {
+      const char c = rows[static_cast<std::size_t>(shape.nz - 1 - z)][static_cast<std::size_t>(x)];
+      const CellIndex cell = shape.index({x, 0, z});
+      const auto i = static_cast<std::size_t>(cell);
+      if (c == '#') world.map->cells[i] = CellState::kOccupied;
+      if (c == 'm') mud.values[i] = 1.0;
+      if (c == 'd') dark.values[i] = 1.0;
+      if (c == 's') world.start = cell;
+    }
+  }
+  world.map->layers = {mud, dark};
+  world.params.action_length.per_metre = 0.02;
+  return world;
+}
+
+inline CellIndex cellAt(const SmallWorld& world, int x, int z) {
+  return world.map->shape.index({x, 0, z});
+}
+
+inline std::vector<double> rewardsAt(const SmallWorld& world,
+                                     const std::vector<std::pair<CellIndex, double>>& where) {
+  std::vector<double> reward(world.map->shape.size(), 0.0);
+  for (const auto& [cell, value] : where) reward[static_cast<std::size_t>(cell)] = value;
+  return reward;
+}
 
 inline PlanProblem problemOf(const SmallWorld& world, std::vector<double> reward = {}) {
   return {.lattice = world.lattice.get(),

@@ -110,12 +110,33 @@ bool CollectionBound::mayExtendFront(const PathPrefix& prefix,
 }
 
 double CollectionBound::utilityFromStart(const Candidate& start, Objective objective) const {
-  if (objective == Objective::kRatio) return ratioFromStart(start);
-  double each_alone = start.expected;
+  return objective == Objective::kRatio ? ratioFromStart(start) : expectedFromStart(start);
+}
+
+double CollectionBound::rewardFor(double cost, const Candidate& start) const {
+  double left = std::max(0.0, cost - start.cost);
+  double reward = start.reward;
   for (const Collectible& item : collectibles_->items()) {
-    each_alone += item.reward * std::exp(-item.least_cost);
+    if (item.least_cost > cost) continue;
+    if (item.leg > left) return reward + item.reward * left / item.leg;
+    reward += item.reward;
+    left -= item.leg;
   }
-  return each_alone;
+  return reward;
+}
+
+double CollectionBound::expectedFromStart(const Candidate& start) const {
+  double alone = start.expected;
+  for (const Collectible& item : collectibles_->items()) {
+    alone += item.reward * std::exp(-item.least_cost);
+  }
+  double in_order = start.expected;
+  double survival = std::exp(-start.cost);
+  for (const std::size_t k : collectibles_->discountedOrder()) {
+    survival *= std::exp(-collectibles_->items()[k].leg);
+    in_order += collectibles_->items()[k].reward * survival;
+  }
+  return std::min({alone, in_order, rewardFor(cost_cap_, start)});
 }
 
 double CollectionBound::ratioFromStart(const Candidate& start) const {
@@ -134,26 +155,14 @@ double CollectionBound::ratioFromStart(const Candidate& start) const {
   const double high = std::min({kCertain, cost_cap_, std::max(farthest, 2.0 * low)});
   const int steps = items.size() > 100'000 ? 100 : 400;
   const double factor = std::pow(std::max(1.0, high / low), 1.0 / steps);
-  const auto bought = [&](double cost) {
-    double left = std::max(0.0, cost - start.cost);
-    double reward = start.reward;
-    for (const Collectible& item : items) {
-      if (item.least_cost > cost) continue;
-      const double part = item.leg <= left ? 1.0 : left / item.leg;
-      reward += part * item.reward;
-      if (part < 1.0) break;
-      left -= item.leg;
-    }
-    return reward;
-  };
-  best = std::max(best, ratioOf(bought(low), nearest));
+  best = std::max(best, ratioOf(rewardFor(low, start), nearest));
   double from = low;
   for (int k = 0; k < steps; ++k) {
     const double to = from * factor;
-    best = std::max(best, ratioOf(bought(to), from));
+    best = std::max(best, ratioOf(rewardFor(to, start), from));
     from = to;
   }
-  if (cost_cap_ > high) best = std::max(best, ratioOf(bought(kInfiniteCost), from));
+  if (cost_cap_ > high) best = std::max(best, ratioOf(rewardFor(kInfiniteCost, start), from));
   return best * (1.0 + 1e-12);  // the grid's ends are rounded
 }
 

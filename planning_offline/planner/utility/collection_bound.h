@@ -52,6 +52,9 @@ class CollectionBound {
   [[nodiscard]] double expected(const PathPrefix& prefix,
                                 std::span<const std::uint8_t> available) const;
   [[nodiscard]] double ratioFromStart(const Candidate& start) const;
+  [[nodiscard]] double expectedFromStart(const Candidate& start) const;
+  /// No path of at most this cost has more reward.
+  [[nodiscard]] double rewardFor(double cost, const Candidate& start) const;
 
   const Collectibles* collectibles_;
   double cost_cap_;

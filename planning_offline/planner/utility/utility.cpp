@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <memory>
 #include <numeric>
 #include <string>
 
@@ -58,6 +60,7 @@ class UtilityRun {
   double two_stage_walk_{-1.0};  ///< Utility of the two-stage planner's path if it is not simple.
   double upper_bound_{std::numeric_limits<double>::infinity()};
   bool proven_{false};
+  bool stopped_{false};  ///< The last search for the best path ran out of time, labels or memory.
   bool front_exact_{false};
   std::int64_t expanded_{0};
 };
@@ -124,6 +127,7 @@ void UtilityRun::search(RewardSearch::Over over) {
   expanded_ += search.expanded();
   upper_bound_ = std::min(upper_bound_, search.upperBound());
   proven_ = search.exhausted() && search.bestWalk() <= found_.utility();
+  stopped_ = !search.exhausted();
 }
 
 void UtilityRun::findFront() {
@@ -144,10 +148,10 @@ PlanResult UtilityRun::conclude() const {
   for (const auto& [cost, point] : found_.front()) {
     result.front.push_back({riskOfCost(cost), point.reward, point.path});
   }
-  const bool cut = progress_.cancelled() || !proven_;
   if (result) {
     result.utility_upper_bound = proven_ ? result.utility : std::max(upper_bound_, result.utility);
-    result.status = cut && !proven_ ? PlanStatus::kCut : PlanStatus::kOptimal;
+    const bool cut = stopped_ || progress_.cancelled();
+    result.status = proven_ ? PlanStatus::kOptimal : cut ? PlanStatus::kCut : PlanStatus::kFeasible;
   } else {
     const bool none =
         rewards_.reachable().empty() || proven_ ||
@@ -170,7 +174,7 @@ std::string UtilityRun::text(const PlanResult& result) const {
     std::array<char, 120> bounds{};
     const double bound = *result.utility_upper_bound;
     std::snprintf(bounds.data(), bounds.size(),
-                  "best so far: the greatest utility is between %.4g and %.4g (gap %.1f %%)",
+                  "best found: the greatest utility is between %.4g and %.4g (gap %.1f %%)",
                   result.utility, bound, 100.0 * (1.0 - result.utility / bound));
     text = bounds.data();
   }

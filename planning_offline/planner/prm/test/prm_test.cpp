@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 #include <string>
@@ -99,7 +100,7 @@ TEST(RoadmapTest, ShortestWaysAreThoseOfBellmanFord) {
                                       {room.start}, settings, Progress());
   const std::size_t root = roadmap.indexOf(room.start);
   ASSERT_LT(root, roadmap.milestones.size());
-  std::vector<double> length(roadmap.milestones.size(), INFINITY);
+  std::vector<double> length(roadmap.milestones.size(), std::numeric_limits<double>::infinity());
   length[root] = 0.0;
   for (std::size_t round = 0; round < length.size(); ++round) {
     for (std::size_t i = 0; i < length.size(); ++i) {

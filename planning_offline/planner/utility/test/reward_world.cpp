@@ -50,7 +50,7 @@ RewardWorld randomRewardWorld(const WorldKind& kind, std::uint32_t seed) {
     made.reward.push_back(random.uniform(0.0, 1.0) < rewarded ? random.uniform(0.0, 1.0) : 0.0);
   }
   const auto start = static_cast<std::size_t>(made.world.start);
-// So that leaving pays: always in rate mode, where staying has no risk.
+  // So that leaving pays: always in rate mode, where staying has no risk.
   made.reward[start] *= kind.mode == RiskMode::kRate ? 0.0 : 0.2;
   made.reward[(start + 1) % cells] = random.uniform(0.1, 1.0);  // perhaps out of reach
   return made;

@@ -10,8 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "planning_offline/planner/makers.h"
+#include "planning_offline/planner/utility/reward_search.h"
 #include "planning_offline/planner/utility/test/reward_world.h"
-#include "planning_offline/search/components.h"
+#include "planning_offline/search/least_risk_tree.h"
 
 namespace tautline::planning {
 namespace {
@@ -192,6 +193,50 @@ TEST(UtilityTest, EqualsBruteForceOnTetherMudAndBattery) {
     expectOptimal(world, Objective::kRatio, compared);
   });
   EXPECT_GT(compared, 700);
+}
+
+/// Without the quick searches before it, which on small maps find nearly everything.
+TEST(RewardSearchTest, AloneFindsTheOptimumAndBoundsItWhenCut) {
+  int compared = 0;
+  int cut = 0;
+  const auto check = [&](const RewardWorld& world, Objective objective) {
+    const auto best = objective == Objective::kRatio ? bruteForce(world, kRatio, kAll)
+                                                     : bruteForce(world, kExpected, kAll);
+    if (!best || *best < 0.0) return;
+    const Progress progress;
+    const PlanProblem problem = world.problem();
+    PlanOptions options;
+    options.objective = objective;
+    const auto tree =
+        leastRiskTreeReference(*problem.lattice, *problem.risk, problem.start, progress);
+    RewardProblem rewards(problem, options, *tree, progress);
+    EXPECT_GE(rewards.bound().utilityFromStart(rewards.start().so_far, objective),
+              *best * (1.0 - kTolerance));
+    for (const auto over : {RewardSearch::Over::kSimple, RewardSearch::Over::kWalks}) {
+      for (const std::int64_t limit : {3, 10, 40, 1'000'000}) {
+        options.label_limit = limit;
+        Candidates found(objective);
+        RewardSearch search(rewards, over, RewardSearch::Aim::kBest, found);
+        Budget budget(options, progress);
+        search.run(budget);
+        EXPECT_GE(search.upperBound(), *best * (1.0 - kTolerance));
+        if (!search.exhausted()) {
+          EXPECT_LT(limit, 1'000'000);
+          ++cut;
+        } else if (search.bestWalk() <= found.utility()) {
+          EXPECT_NEAR(found.utility(), *best, kTolerance * std::max(1.0, *best));
+          ++compared;
+        }
+      }
+    }
+  };
+  for (const auto objective : {Objective::kRatio, Objective::kExpectedReward}) {
+    const auto both = [&](const RewardWorld& world) { check(world, objective); };
+    onRandomWorlds(kinds(false), 8000, 15, both);
+    onRandomWorlds(kinds(true), 8000, 10, both);
+  }
+  EXPECT_GT(compared, 2000);
+  EXPECT_GT(cut, 1000);
 }
 
 TEST(UtilityTest, ExpectedRewardEqualsBruteForce) {
