@@ -38,15 +38,6 @@ Rgb grey(double lightness) noexcept {
   return {level, level, level};
 }
 
-std::vector<Rgb> coloursOf(const std::vector<double>& values, double low, double high) {
-  std::vector<Rgb> out;
-  out.reserve(values.size());
-  const double span = high > low ? high - low : 1.0;
-  for (const double value : values)
-    out.push_back(std::isfinite(value) ? viridis((value - low) / span) : grey(1.0));
-  return out;
-}
-
 std::string viridisPalette() {
   std::string out;
   for (std::size_t i = 0; i < kScale.size(); ++i) {

@@ -32,11 +32,6 @@ struct Raster {
   std::vector<Rgb> pixels{};  ///< Row by row, row 0 at y_min.
 };
 
-/// `values` (row by row) as colours between `low` and `high`; non-finite ones are white. Same
-/// layout as Raster::pixels.
-[[nodiscard]] std::vector<Rgb> coloursOf(const std::vector<double>& values, double low,
-                                         double high);
-
 /// "low" to "high" as gnuplot's palette of the same scale.
 [[nodiscard]] std::string viridisPalette();
 

@@ -145,7 +145,7 @@ void addCompareCommand(CLI::App& app, ExitCode& result) {
   verb->add_option("--svg", arguments->svg, "Draw all paths over the map")->type_name("FILE");
   verb->footer(
       "Example: tautline-plan compare --map config/scenes/one_contact.scene.toml --resolution 0.2 "
-      "--clearance 0.3 --goal 3,1.2,2 "
+      "--clearance 0.3 --start 1.5,0.9,2.1 --goal 3.3,1.3,3.5 "
       "--planners additive,directional,tether");
   verb->callback([arguments, &result] { result = run(*arguments); });
 }

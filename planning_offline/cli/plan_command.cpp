@@ -145,8 +145,8 @@ void addPlanCommand(CLI::App& app, ExitCode& result) {
   verb->add_option("-o,--output", arguments->output, "Write the mission")
       ->type_name("FILE.mission.toml");
   verb->footer(
-      "Example: tautline-plan plan --map config/scenes/one_contact.scene.toml --clearance 0.3 "
-      "--goal 3,1.2,2 --planner tether "
+      "Example: tautline-plan plan --map config/scenes/one_contact.scene.toml --resolution 0.2 "
+      "--clearance 0.3 --start 1.5,0.9,2.1 --goal 3.3,1.3,3.5 --planner tether "
       "--svg plan.svg -o plan.mission.toml");
   verb->callback([arguments, &result] { result = runPlan(*arguments); });
 }
@@ -157,8 +157,8 @@ void addWhyCommand(CLI::App& app, ExitCode& result) {
   const auto arguments = std::make_shared<Arguments>();
   addShared(*verb, *arguments);
   verb->footer(
-      "Example: tautline-plan why --map config/scenes/one_contact.scene.toml --clearance 0.3 "
-      "--goal 3,1.2,2");
+      "Example: tautline-plan why --map config/scenes/one_contact.scene.toml --resolution 0.2 "
+      "--clearance 0.3 --start 1.5,0.9,2.1 --goal 3.3,1.3,3.5");
   verb->callback([arguments, &result] { result = runWhy(*arguments); });
 }
 

@@ -1,7 +1,5 @@
 #include "common/plot/raster.h"
 
-#include <limits>
-
 #include <gtest/gtest.h>
 
 #include "common/plot/figure.h"
@@ -19,15 +17,6 @@ TEST(Raster, TheScaleGrowsLighterAndClamps) {
   }
   EXPECT_EQ(viridis(-1.0), viridis(0.0));
   EXPECT_EQ(viridis(2.0), viridis(1.0));
-}
-
-TEST(Raster, ValuesOutsideTheScaleAndHolesHaveAColour) {
-  const auto colours =
-      coloursOf({2.0, 4.0, 9.0, std::numeric_limits<double>::quiet_NaN()}, 2.0, 4.0);
-  EXPECT_EQ(colours[0], viridis(0.0));
-  EXPECT_EQ(colours[1], viridis(1.0));
-  EXPECT_EQ(colours[2], viridis(1.0));
-  EXPECT_EQ(colours[3], grey(1.0));
 }
 
 // gnuplot wants pixel centres, and the panel must be as large as the image's outer edges.

@@ -390,13 +390,19 @@ TEST(Exact, CutByPathsItHasTheBestSoFar) {
   EXPECT_LE(*to_goal.risk_lower_bound, tether.report.risk + 1e-12);
 }
 
-TEST(Lookback, OutOfTimeItSaysSo) {
+TEST(Lookback, OutOfTimeItHasAtLeastThePathWithoutATether) {
   const SmallWorld world = pillars();
+  const CellIndex goal = cellAt(world, 12, 16);
   PlanOptions options;
   options.time_limit = 0.0;
-  const PlanResult result = planTo(*makeLookback(), world, cellAt(world, 12, 16), options);
-  EXPECT_EQ(result.status, PlanStatus::kNone);
+  const PlanResult result = planTo(*makeLookback(), world, goal, options);
+  EXPECT_EQ(result.status, PlanStatus::kCut);
   EXPECT_NE(result.text.find("time limit"), std::string::npos);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result.path.back(), goal);
+  const PlanResult tether = planTo(*makeTether(), world, goal);
+  EXPECT_GE(result.report.risk, tether.report.risk - 1e-12);
+  EXPECT_LE(*result.risk_lower_bound, tether.report.risk + 1e-12);
 }
 
 TEST(Tether, CancelledOnTheWayItKeepsTheBestSoFar) {
