@@ -113,7 +113,7 @@ ExitCode run(const Arguments& arguments) {
   if (!arguments.svg.empty() && any) {
     plot::writeSvg(
         planFigure(fmt::format("{}: planners side by side", space.risk_space.space.map->name),
-                   *space.risk_space.space.map, paths),
+                   *space.risk_space.space.map, paths, space.rewards),
         arguments.svg);
   }
   if (arguments.json) {

@@ -44,7 +44,7 @@ Explanation explain(std::string_view planner, const PlanProblem& problem,
   PlanProblem other = problem;
   other.lattice = &lattice;
   PlanResult runner_up = solve(planner, other, options, progress);
-  if (runner_up) out.runner_up = std::move(runner_up);
+  out.runner_up = std::move(runner_up);
   return out;
 }
 
@@ -58,9 +58,13 @@ std::string explanationText(const Explanation& e, const PlanResult& result) {
   out += fmt::format("Riskiest state: {} at ({:.2f}, {:.2f}, {:.2f}), {:.4f}\n", e.worst_state,
                      worst.position.x(), worst.position.y(), worst.position.z(), worst.risk);
   if (!e.avoided_state) return out;
-  if (!e.runner_up)
-    return out + fmt::format("Without state {} there is no path.\n", *e.avoided_state);
+  if (!e.runner_up) return out;
   const PlanResult& other = *e.runner_up;
+  if (!other) {
+    const char* found =
+        other.status == PlanStatus::kUnreachable ? "there is no path" : "no path was found in time";
+    return out + fmt::format("Without state {} {}.\n", *e.avoided_state, found);
+  }
   out += fmt::format(
       "Runner-up, the best path that keeps off state {}: risk {:.4f} ({:+.4f}), {} states ({:+d}), "
       "{:.2f} m ({:+.2f} m)\n",

@@ -20,7 +20,8 @@ struct Explanation {
   };
   std::vector<Share> shares;
   std::size_t worst_state{0};  ///< With the highest state risk.
-  /// The best path of the same planner that keeps off the plan's worst state between its ends.
+  /// The same planner's result without the plan's worst state between its ends; absent where there
+  /// is none such.
   std::optional<std::size_t> avoided_state;
   std::optional<PlanResult> runner_up;
 };

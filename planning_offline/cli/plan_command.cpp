@@ -2,6 +2,7 @@
 /// `tautline-plan plan` and `why`.
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <CLI/Config.hpp>
@@ -63,21 +64,22 @@ void writeFiles(const Arguments& arguments, const PlanResult& result, const Plan
   const VoxelMap& map = *space.risk_space.space.map;
   const std::string title =
       fmt::format("{}, {}: risk {:.3f}", map.name, arguments.planner, result.report.risk);
+  std::optional<Mission> mission;  // made first: what cannot be a mission leaves no file behind
+  if (!arguments.output.empty()) {
+    mission = missionOf(result, map, fmt::format("Planned by {}", title), arguments.output);
+  }
   if (!arguments.csv.empty())
     writeFileAtomically(arguments.csv, riskTableCsv(result.report, space.problem.risk->enabled()));
   if (!arguments.svg.empty())
-    plot::writeSvg(planFigure(title, map, {{"path", &result.report}}), arguments.svg);
-  if (!arguments.output.empty()) {
-    writeMissionFile(result, map,
-                     fmt::format("Planned by {} on {}: risk {:.4f}", arguments.planner, map.name,
-                                 result.report.risk),
-                     arguments.output);
-  }
+    plot::writeSvg(planFigure(title, map, {{"path", &result.report}}, space.rewards),
+                   arguments.svg);
+  if (mission) writeMission(*mission, arguments.output);
 }
 
 ExitCode runPlan(const Arguments& arguments) {
   TerminalProgress terminal;
   const PlanSpace space = loadPlanSpace(arguments.plan, terminal.progress());
+  if (!arguments.output.empty()) needReel(*space.risk_space.space.map);
   const PlanResult result =
       solve(arguments.planner, space.problem, space.options, terminal.progress());
   std::optional<Explanation> explanation;

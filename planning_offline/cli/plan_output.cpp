@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
-#include "common/mission/mission_file.h"
+#include "common/toml/config_file.h"
 
 namespace tautline::planning {
 namespace {
@@ -105,7 +105,16 @@ json resultJson(const std::string& planner, const PlanResult& result, const Plan
               {"resolution_m", space.risk_space.space.map->resolution},
               {"connectivity", nameOf(space.problem.lattice->connectivity(), kConnectivityNames)},
               {"free_cells", space.problem.lattice->freeCount()},
-              {"seed", space.options.seed},
+              {"settings",
+               {{"seed", space.options.seed},
+                {"objective", nameOf(space.options.objective, kObjectiveNames)},
+                {"risk_cap", space.options.risk_cap},
+                {"discount", space.options.discount},
+                {"lookback", space.options.lookback},
+                {"time_limit_s", space.options.time_limit},
+                {"label_limit", space.options.label_limit},
+                {"clearance_m", space.clearance},
+                {"params", dumpConfig(space.problem.risk->params())}}},
               {"risk", nullptr},
               {"reward", nullptr},
               {"utility", nullptr},
@@ -133,14 +142,17 @@ json resultJson(const std::string& planner, const PlanResult& result, const Plan
   return out;
 }
 
-void writeMissionFile(const PlanResult& result, const VoxelMap& map, const std::string& description,
-                      const std::filesystem::path& file) {
-  if (!map.reel) {
-    throw InputError({.key = "--output",
-                      .problem = "a mission needs the place of the reel, and the map has none",
-                      .remedy = "--reel x,y,z"},
-                     ExitCode::kUsage);
-  }
+void needReel(const VoxelMap& map) {
+  if (map.reel) return;
+  throw InputError({.key = "--output",
+                    .problem = "a mission needs the place of the reel, and the map has none",
+                    .remedy = "--reel x,y,z"},
+                   ExitCode::kUsage);
+}
+
+Mission missionOf(const PlanResult& result, const VoxelMap& map, const std::string& description,
+                  const std::filesystem::path& file) {
+  needReel(map);
   Mission mission;
   mission.name = file.stem().stem().string();
   mission.description = description;
@@ -179,7 +191,7 @@ void writeMissionFile(const PlanResult& result, const VoxelMap& map, const std::
       waypoint.risk = state.risk;
     } while (stack.size() < state.contacts.size());
   }
-  writeMission(mission, file);
+  return mission;
 }
 
 }  // namespace tautline::planning

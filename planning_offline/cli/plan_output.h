@@ -9,6 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "common/mission/mission_file.h"
 #include "planning_offline/cli/workspace.h"
 #include "planning_offline/planner/planner.h"
 #include "planning_offline/risk/risk_model.h"
@@ -35,9 +36,13 @@ namespace tautline::planning {
                                         const PlanSpace& space);
 
 /// The path as a mission (docs/mission_files.md): shifted to the reel, with the tether contacts of
-/// every state and its state risk. Throws InputError: no reel, or more waypoints or contacts than a
-/// mission holds.
-void writeMissionFile(const PlanResult& result, const VoxelMap& map, const std::string& description,
-                      const std::filesystem::path& file);
+/// every state and its state risk; its map is given relative to the folder of `file`. Throws
+/// InputError: no reel, or more waypoints or contacts than a mission holds.
+[[nodiscard]] Mission missionOf(const PlanResult& result, const VoxelMap& map,
+                                const std::string& description, const std::filesystem::path& file);
+
+/// Throws InputError (usage) if the map has no reel: asked before anything is planned for a
+/// mission.
+void needReel(const VoxelMap& map);
 
 }  // namespace tautline::planning

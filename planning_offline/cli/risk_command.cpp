@@ -19,6 +19,7 @@
 #include "planning_offline/cli/plan_output.h"
 #include "planning_offline/cli/terminal_progress.h"
 #include "planning_offline/cli/workspace.h"
+#include "planning_offline/field/line_of_sight.h"
 #include "planning_offline/picture/plan_picture.h"
 #include "planning_offline/risk/table_file.h"
 
@@ -59,9 +60,11 @@ std::vector<Eigen::Vector3d> readPath(const std::string& file) {
   std::vector<Eigen::Vector3d> points;
   if (file.ends_with(".toml")) {
     const Mission mission = readMission(file);
+    // A waypoint where the last one is only switches the contact: no state of its own.
     for (int i = 0; i < mission.plan->waypoint_count; ++i) {
-      points.push_back(mission.plan->waypoints[static_cast<std::size_t>(i)].p_WD +
-                       mission.reel_position);
+      const Eigen::Vector3d p =
+          mission.plan->waypoints[static_cast<std::size_t>(i)].p_WD + mission.reel_position;
+      if (points.empty() || p != points.back()) points.push_back(p);
     }
     return points;
   }
@@ -88,29 +91,51 @@ std::vector<Eigen::Vector3d> readPath(const std::string& file) {
   return points;
 }
 
+/// Throws InputError for the first point or way between two that is not in free space.
+void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space,
+                 const std::string& file) {
+  const VoxelMap& map = *space.map;
+  std::vector<std::uint8_t> blocked;
+  for (const std::uint8_t free : space.lattice->freeCells()) blocked.push_back(free != 0 ? 0 : 1);
+  const auto cells = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return (p - map.origin) / map.resolution;
+  };
+  const auto text = [](const Eigen::Vector3d& p) {
+    return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
+  };
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const CellIndex cell = map.indexAt(path[i]);
+    if (cell == kNoCell || !space.lattice->free(cell)) {
+      throw InputError({.file = file,
+                        .key = fmt::format("point {}", i),
+                        .problem = fmt::format(
+                            "{} is {} the map {}", text(path[i]),
+                            cell == kNoCell ? "outside" : "not in the free space of", map.name)});
+    }
+    if (i > 0 && !lineOfSight(map.shape, blocked, cells(path[i - 1]), cells(path[i]))) {
+      throw InputError(
+          {.file = file,
+           .key = fmt::format("points {} to {}", i - 1, i),
+           .problem = fmt::format("the way from {} to {} leaves the free space of the map {}",
+                                  text(path[i - 1]), text(path[i]), map.name)});
+    }
+  }
+}
+
 ExitCode runPath(const Arguments& arguments) {
   TerminalProgress terminal;
   const RiskSpace space = loadRiskSpace(arguments.risk, terminal.progress());
   const VoxelMap& map = *space.space.map;
   const std::vector<Eigen::Vector3d> path = readPath(arguments.path);
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const CellIndex cell = map.indexAt(path[i]);
-    if (cell != kNoCell && space.space.lattice->free(cell)) continue;
-    throw InputError(
-        {.file = arguments.path,
-         .key = fmt::format("point {}", i),
-         .problem = fmt::format(
-             "({:g}, {:g}, {:g}) is {} the map {}", path[i].x(), path[i].y(), path[i].z(),
-             cell == kNoCell ? "outside" : "not in the free space of", map.name)});
-  }
+  needFreeWay(path, space.space, arguments.path);
   const RiskReport report = space.risk->evaluate(path);
   const std::vector<RiskElement> elements = space.risk->enabled();
   terminal.clear();
   if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, riskTableCsv(report, elements));
   if (!arguments.svg.empty()) {
-    plot::writeSvg(
-        planFigure(fmt::format("{}: risk {:.3f}", map.name, report.risk), map, {{"path", &report}}),
-        arguments.svg);
+    plot::writeSvg(planFigure(fmt::format("{}: risk {:.3f}", map.name, report.risk), map,
+                              {{"path", &report}}, map.rewards),
+                   arguments.svg);
   }
   if (arguments.json) {
     std::vector<double> state_risk;
@@ -156,6 +181,7 @@ void addRiskCommand(CLI::App& app, ExitCode& result) {
       ->type_name("FILE")
       ->needs(map)
       ->excludes(table);
+  table->excludes(map);
   verb->add_flag("--json", arguments->json, "Machine-readable output");
   verb->add_option("--csv", arguments->csv, "Write the table of states and elements (with --path)")
       ->type_name("FILE");

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <CLI/Config.hpp>
@@ -111,9 +113,44 @@ std::vector<double> rewardPerCell(const std::vector<Reward>& rewards, const Voxe
                         .problem = fmt::format("{} is outside the map {}",
                                                pointText(rewards[i].position), map.name)});
     }
+    if (map.cells[static_cast<std::size_t>(cell)] == CellState::kOccupied) {
+      throw InputError({.key = fmt::format("rewards[{}].position_m", i),
+                        .problem = fmt::format("{} is inside an obstacle of the map {}",
+                                               pointText(rewards[i].position), map.name)});
+    }
     out[static_cast<std::size_t>(cell)] += rewards[i].value;
   }
   return out;
+}
+
+/// Half-computed maps are worth nothing: ends the program instead.
+void stopIfCancelled(const Progress& progress) {
+  if (!progress.cancelled()) return;
+  throw InputError(
+      {.problem = "stopped while the map was prepared, before there was anything to show"},
+      ExitCode::kFailed);
+}
+
+/// Leaves only the cells that a tether without contacts reaches.
+void keepStraightTether(MapSpace& space, const PlanArguments& arguments, CellIndex start,
+                        std::optional<CellIndex> goal, const Progress& progress) {
+  const VoxelMap& map = *space.map;
+  if (!map.reel) throw usage("--straight-tether", "needs a reel", {}, "--reel x,y,z");
+  const MapArguments& about = arguments.risk.map;
+  const ReachMap reach =
+      computeReach(map, {space.lattice->freeCells().begin(), space.lattice->freeCells().end()},
+                   *map.reel, {.threads = about.threads}, progress);
+  stopIfCancelled(progress);
+  space.lattice = std::make_unique<Lattice>(map.shape, about.connectivity, reach.straight);
+  const auto check = [&](CellIndex cell, const char* what) {
+    if (space.lattice->free(cell)) return;
+    throw usage("--straight-tether",
+                fmt::format("a straight tether from the reel does not reach the {} {}", what,
+                            pointText(map.centre(cell))),
+                {}, "choose another place, or allow tether contacts");
+  };
+  check(start, "start");
+  if (goal) check(*goal, "goal");
 }
 
 }  // namespace
@@ -151,6 +188,10 @@ void MapArguments::addTo(CLI::App& verb) {
 }
 
 MapSpace loadMapSpace(const MapArguments& arguments, const Progress& progress) {
+  for (const auto& [option, value] : {std::pair{"--resolution", arguments.resolution},
+                                      std::pair{"--clearance", arguments.clearance}}) {
+    if (!std::isfinite(value)) throw usage(option, "is not a number", "metres");
+  }
   LoadOptions options;
   if (arguments.resolution > 0.0) options.resolution = arguments.resolution;
   if (!arguments.crop.empty()) {
@@ -169,6 +210,7 @@ MapSpace loadMapSpace(const MapArguments& arguments, const Progress& progress) {
   if (!arguments.reel.empty()) map.reel = parsePoint(arguments.reel, "--reel");
   const FreeSpaceOptions free{arguments.clearance, arguments.unknown_is_free, arguments.threads};
   std::vector<std::uint8_t> cells = freeSpace(map, free, progress);
+  stopIfCancelled(progress);
   MapSpace space;
   space.lattice = std::make_unique<Lattice>(map.shape, arguments.connectivity, std::move(cells));
   space.map = std::make_shared<const VoxelMap>(std::move(map));
@@ -200,6 +242,7 @@ RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress
   const VoxelMap& map = *out.space.map;
   MapFields fields =
       computeFields(map, withMapArguments(neededFields(params, map), arguments.map), progress);
+  stopIfCancelled(progress);
   std::shared_ptr<TautString> string;
   if (map.reel) string = makeTautString(map, *map.reel);
   out.risk =
@@ -250,14 +293,6 @@ PlanSpace loadPlanSpace(const PlanArguments& arguments, const Progress& progress
   out.risk_space = loadRiskSpace(arguments.risk, progress);
   MapSpace& space = out.risk_space.space;
   const VoxelMap& map = *space.map;
-  if (arguments.straight_tether) {
-    if (!map.reel) throw usage("--straight-tether", "needs a reel", {}, "--reel x,y,z");
-    const ReachMap reach =
-        computeReach(map, {space.lattice->freeCells().begin(), space.lattice->freeCells().end()},
-                     *map.reel, {.threads = arguments.risk.map.threads}, progress);
-    space.lattice =
-        std::make_unique<Lattice>(map.shape, arguments.risk.map.connectivity, reach.straight);
-  }
   if (arguments.start.empty() && !map.start)
     throw usage("--start", "is missing and the map has none", "x,y,z in metres");
   out.problem.start = arguments.start.empty()
@@ -269,12 +304,15 @@ PlanSpace loadPlanSpace(const PlanArguments& arguments, const Progress& progress
     out.options.goal = cellFor(parsePoint(arguments.goal, "--goal"), "--goal", space,
                                arguments.risk.map, ExitCode::kUsage);
   }
-  out.problem.reward =
-      rewardPerCell(arguments.rewards.empty() ? map.rewards : readRewards(arguments.rewards), map);
+  if (arguments.straight_tether)
+    keepStraightTether(space, arguments, out.problem.start, out.options.goal, progress);
+  out.rewards = arguments.rewards.empty() ? map.rewards : readRewards(arguments.rewards);
+  out.problem.reward = rewardPerCell(out.rewards, map);
   if (!out.options.goal && out.problem.reward.empty()) {
     throw usage("--goal", "is missing and there are no rewards to choose a goal by",
                 "--goal x,y,z, or --rewards FILE");
   }
+  out.clearance = arguments.risk.map.clearance;
   out.problem.lattice = space.lattice.get();
   out.problem.risk = out.risk_space.risk.get();
   return out;

@@ -74,13 +74,14 @@ struct PlanArguments {
   PlanOptions options;
   bool straight_tether{false};
 
-  /// `with_goal`: also the options about ends and rewards.
   void addTo(CLI::App& verb);
 };
 struct PlanSpace {
   RiskSpace risk_space;
   PlanProblem problem;
   PlanOptions options;
+  std::vector<Reward> rewards;  ///< Planned with, M [m].
+  double clearance{0.0};        ///< [m]
 };
 [[nodiscard]] PlanSpace loadPlanSpace(const PlanArguments& arguments, const Progress& progress);
 

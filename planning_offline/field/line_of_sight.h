@@ -17,9 +17,13 @@ namespace tautline::planning {
 /// arithmetic. Centres and corners of cells are kept as they are.
 inline constexpr double kSightUnit = 1.0 / 65536.0;
 
+/// Largest coordinate of a line's end, either sign [cells].
+inline constexpr double kSightFarthest = 16384.0;
+
 /// True if the straight line between two points meets the interior of no blocked cell. Touching
 /// faces, edges or corners is free. Cells outside the grid do not block. Points in cell units:
-/// (p_M − origin) / resolution, components within ±16384. `blocked`: one byte a cell, 0 = free.
+/// (p_M − origin) / resolution, components within ±kSightFarthest. `blocked`: one byte a cell, 0 =
+/// free.
 [[nodiscard]] bool lineOfSight(const GridShape& shape, std::span<const std::uint8_t> blocked,
                                const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept;
 

@@ -93,6 +93,14 @@ ReachMap computeReach(const VoxelMap& map, const std::vector<std::uint8_t>& free
   TAUTLINE_CHECK(free.size() == shape.size());
   const std::vector<std::uint8_t> obstacles = tetherObstacles(map, options, progress);
   const Eigen::Vector3d reel_cells = (reel - map.origin) / map.resolution;
+  if (!(reel_cells.cwiseAbs().maxCoeff() <= kSightFarthest)) {
+    throw InputError(
+        {.file = map.file,
+         .key = "reel",
+         .problem = fmt::format("({:g}, {:g}, {:g}) m is too far from the map", reel.x(), reel.y(),
+                                reel.z()),
+         .allowed = fmt::format("within {:g} m of its corner", kSightFarthest * map.resolution)});
+  }
   if (!progress.cancelled() && !lineOfSight(shape, obstacles, reel_cells, reel_cells)) {
     throw InputError({.file = map.file,
                       .key = "reel",

@@ -109,11 +109,12 @@ void addTether(Drawing& drawing, const VoxelMap& map, const StateRisk& end) {
   drawing.curves.push_back(std::move(tether));
 }
 
-void addPlaces(Drawing& drawing, const VoxelMap& map, const std::vector<DrawnPath>& paths) {
+void addPlaces(Drawing& drawing, const VoxelMap& map, const std::vector<DrawnPath>& paths,
+               const std::vector<Reward>& rewards) {
   if (map.reel)
     drawing.markers.push_back(
         {.at = *map.reel, .symbol = Symbol::kSquare, .size = 1.3, .name = "reel"});
-  for (const Reward& reward : map.rewards) {
+  for (const Reward& reward : rewards) {
     drawing.markers.push_back(
         {.at = reward.position,
          .symbol = Symbol::kTriangle,
@@ -139,7 +140,7 @@ void addPlaces(Drawing& drawing, const VoxelMap& map, const std::vector<DrawnPat
 }  // namespace
 
 plot::Figure planFigure(const std::string& title, const VoxelMap& map,
-                        const std::vector<DrawnPath>& paths) {
+                        const std::vector<DrawnPath>& paths, const std::vector<Reward>& rewards) {
   Drawing drawing;
   drawing.title = title;
   drawing.value_label = "state risk";
@@ -156,7 +157,7 @@ plot::Figure planFigure(const std::string& title, const VoxelMap& map,
     drawing.value_limits = plot::Limits{0.0, highest > 0.0 ? highest : 1.0};
     addTether(drawing, map, paths.front().report->states.back());
   }
-  addPlaces(drawing, map, paths);
+  addPlaces(drawing, map, paths, rewards);
   return map.shape.planar() ? viewFigure(drawing, View::kTop) : viewsFigure(drawing);
 }
 

@@ -24,7 +24,8 @@ struct DrawnPath {
 /// the more of the slab they fill; unknown space is tinted. Reel, rewards, contacts, start and end
 /// are marked; the tether is drawn for the last state.
 [[nodiscard]] plot::Figure planFigure(const std::string& title, const VoxelMap& map,
-                                      const std::vector<DrawnPath>& paths);
+                                      const std::vector<DrawnPath>& paths,
+                                      const std::vector<Reward>& rewards);
 
 /// One layer of cells of a field at height index `y`, seen from above; obstacles grey, unknown
 /// space white.

@@ -94,6 +94,28 @@ holds "reach" "j['free'] > j['straight'] > 0 and j['with_contacts'] == j['free']
   "$plan" reach --map "$room" --reel 0.5,0.5,0.5 --json
 holds "fields" "j['fields']['distance']['min'] > 0 and 0 < j['fields']['locale_risk']['max'] < 1" "$plan" fields --map "$room" --json
 
+holds "a slice is planar" "all(abs(p[1] - j['path'][0][1]) < 1e-9 for p in j['path'])" \
+  "$plan" plan --map "$room" --slice 1.1 --start 0.7,1.1,0.7 --goal 3.5,1.1,3.5 --planner tether --json
+holds "a crop keeps to its box" "all(p[0] < 1.6 for p in j['path'])" \
+  "$plan" plan --map "$room" --crop 0,0,0,1.6,2,4 --goal 1.1,1.1,3.5 --json --rewards <(printf '[[rewards]]\nposition_m = [1, 1, 1]\nvalue = 1\n')
+holds "a straight tether has no contacts" "all(s['contacts_m'] == [] for s in j['states'])" \
+  "$plan" plan --map "$room" --straight-tether --goal 3.5,1.1,1.1 --planner tether --json
+for planner in lookback "utility two-stage" utility; do
+  holds "plan by $planner" "j['status'] in ('optimal', 'feasible', 'cut') and j['reward'] == 1.0 and j['settings']['params']" \
+    "$plan" plan --map "$room" --resolution 0.4 --planner "$planner" --time-limit-s 5 --json
+done
+data=${TAUTLINE_DATA:-$config/../../shared/data}
+if [[ -d $data/octomap ]]; then
+  holds "a real building plans" "j['status'] == 'optimal' and len(j['path']) > 50" \
+    "$plan" plan --map "$data/octomap/geb079.bt" --params "$config/risk/rate.toml" --start 1,1,1 --goal 3,1,10 --json
+  holds "a real test stage plans" "j['status'] == 'optimal' and len(j['path']) > 20" \
+    "$plan" plan --map "$data/octomap/upo_stage_1.bt" --resolution 0.2 --params "$config/risk/rate.toml" --start 0,4,0 --goal 3,5,-8 --json
+  holds "published shortest paths" "j['checked'] == 500 and j['mismatches'] == 0" \
+    "$plan" scen "$data/movingai3d/Simple.3dmap" "$data/movingai3d/Simple_500.3dscen" --json
+else
+  echo "SKIPPED: real maps, for there is no folder $data (TAUTLINE_DATA)"
+fi
+
 # Files: all or nothing.
 "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --planner tether --svg "$work/p.svg" --csv "$work/p.csv" -o "$work/p.mission.toml" >/dev/null 2>&1
 if "$bin/tautline" mission show "$work/p.mission.toml" >/dev/null && grep -q '</svg>' "$work/p.svg" && [[ $(head -n 1 "$work/p.csv") == state,x_m* ]]; then
@@ -120,6 +142,17 @@ else
 fi
 
 # Bad input.
+printf 'type octile\nheight 3\nwidth 3\nmap\n...\n...\n...\n' >"$work/tiny.map"
+expect 2 '--output.*no reel|--output.*place of the reel' "$plan" plan --map "$work/tiny.map" --start 0.5,0.5,0.5 --goal 2.5,0.5,2.5 \
+  --svg "$work/no.svg" --csv "$work/no.csv" -o "$work/no.mission.toml"
+[[ -e $work/no.svg || -e $work/no.csv ]] && fail "a plan without a place for its mission wrote files" "$work/no.*"
+expect 5 'nowhere/x.csv' "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --csv "$work/nowhere/x.csv"
+expect 2 '--straight-tether.*does not reach the goal' "$plan" plan --map "$room" --straight-tether --goal 3.5,1.1,3.5
+expect 5 'reel.*too far' "$plan" reach --map "$room" --reel 100000,0,0
+expect 2 '--clearance: is not a number' "$plan" fields --map "$room" --clearance nan
+expect 5 'rewards.*inside an obstacle' "$plan" plan --map "$room" --rewards <(printf '[[rewards]]\nposition_m = [2, 1, 2]\nvalue = 1\n')
+printf '1.1 1.1 1.1\n3.1 1.1 3.1\n' >"$work/path.txt"
+expect 5 'path.txt: points 0 to 1.*leaves the free space' "$plan" risk --map "$room" --path "$work/path.txt"
 expect 2 '--start.*outside the map' "$plan" plan --map "$room" --start 9,9,9 --goal 3.5,1.1,3.5
 expect 2 '--start.*inside an obstacle' "$plan" plan --map "$room" --start 2,1,2 --goal 3.5,1.1,3.5
 expect 2 '--goal.*inside an obstacle' "$plan" plan --map "$room" --goal 2,1,2
