@@ -17,10 +17,10 @@ PlanResult Additive::plan(const PlanProblem& problem, const PlanOptions& options
                           const Progress& progress) const {
   needGoalOrRewards(problem, options);
   Budget budget(options, progress);
-  const AdditivePaths found =
-      additivePaths(*problem.lattice,
-                    additiveCosts(*problem.lattice, *problem.risk, AdditiveWeights::kNormalized),
-                    problem.start, [&budget] { return budget.spent(0, "additive paths"); });
+  const AdditivePaths found = additivePaths(
+      *problem.lattice,
+      additiveCosts(*problem.lattice, *problem.risk, AdditiveWeights::kNormalized), problem.start,
+      [&budget] { return budget.spent(0, "additive paths"); }, options.goal);
   // Its own optimum is no statement about risk: whatever it finds is a path, not a proven one.
   if (!options.goal) {
     const auto path = [&](CellIndex cell) { return found.pathTo(cell); };

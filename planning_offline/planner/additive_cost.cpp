@@ -34,7 +34,8 @@ std::vector<double> additiveCosts(const Lattice& lattice, const RiskModel& risk,
 }
 
 AdditivePaths additivePaths(const Lattice& lattice, const std::vector<double>& cell_cost,
-                            CellIndex start, const std::function<bool()>& stop) {
+                            CellIndex start, const std::function<bool()>& stop,
+                            std::optional<CellIndex> goal) {
   const auto at = [](CellIndex i) { return static_cast<std::size_t>(i); };
   using Entry = std::tuple<double, std::int32_t, CellIndex>;  // cost, steps, cell
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -59,6 +60,7 @@ AdditivePaths additivePaths(const Lattice& lattice, const std::vector<double>& c
     if (cost != found.cost[at(u)] || n != steps[at(u)]) continue;
     if (stop()) found.complete = false;
     ++found.expanded;
+    if (u == goal) break;  // every later offer costs more, or as much in more steps
     const std::uint32_t moves = lattice.moves(u);
     for (const Direction d : lattice.directions()) {
       if ((moves >> d & 1U) == 0) continue;

@@ -6,6 +6,7 @@
 /// offline only.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "planning_offline/map/lattice.h"
@@ -30,12 +31,14 @@ struct AdditivePaths {
   std::int64_t expanded{0};
   bool complete{true};  ///< False if `stop` ended it.
 
-  /// Start first; empty if no path leads there.
+  /// Start first; empty if no path leads there or, beyond the goal of the search, none is known.
   [[nodiscard]] std::vector<CellIndex> pathTo(CellIndex cell) const;
 };
-/// Ties: fewer steps, then the lower cells. `stop` is asked at each expansion.
+/// Ties: fewer steps, then the lower cells. `stop` is asked at each expansion. With `goal` the
+/// search ends there: paths to other cells may be missing or not the least.
 [[nodiscard]] AdditivePaths additivePaths(const Lattice& lattice,
                                           const std::vector<double>& cell_cost, CellIndex start,
-                                          const std::function<bool()>& stop);
+                                          const std::function<bool()>& stop,
+                                          std::optional<CellIndex> goal = std::nullopt);
 
 }  // namespace tautline::planning

@@ -10,11 +10,6 @@
 namespace tautline::planning {
 namespace {
 
-double ratioOf(double reward, double risk) {
-  if (reward <= 0.0) return 0.0;
-  return risk > 0.0 ? reward / risk : std::numeric_limits<double>::infinity();
-}
-
 /// What the best path to a cell can have collected at most: most cells then need no path at all. A
 /// reward on the way to a cell has itself been reached for no more, and the way on from there costs
 /// what actions of that length cost at least.

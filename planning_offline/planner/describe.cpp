@@ -31,11 +31,7 @@ double rewardOf(const std::vector<double>& reward, const std::vector<CellIndex>&
 
 double utilityOf(const std::vector<double>& reward, const std::vector<CellIndex>& path,
                  const RiskReport& report, Objective objective) {
-  if (objective == Objective::kRatio) {
-    const double sum = rewardOf(reward, path);
-    if (sum <= 0.0) return 0.0;
-    return report.risk > 0.0 ? sum / report.risk : std::numeric_limits<double>::infinity();
-  }
+  if (objective == Objective::kRatio) return ratioOf(rewardOf(reward, path), report.risk);
   std::vector<double> survival;
   survival.reserve(path.size());
   double cost = 0.0;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -64,9 +63,10 @@ class Enumeration {
   [[nodiscard]] double bestUtility() const { return best_utility_; }
   [[nodiscard]] double lowerBound() const { return lower_bound_; }
   [[nodiscard]] std::int64_t paths() const { return paths_; }
+  [[nodiscard]] bool capped() const { return capped_; }
 
  private:
-  [[nodiscard]] bool hopeless(const State& state, double value, double remaining) const;
+  [[nodiscard]] bool hopeless(const State& state, double value, double remaining);
   void enter(const State& state);
   void leave();
   void judge(const Frame& frame);
@@ -83,8 +83,7 @@ class Enumeration {
   }
   [[nodiscard]] double utilityFor(double value, double cost) const {
     if (options_.objective == Objective::kExpectedReward) return value;
-    if (value <= 0.0) return 0.0;
-    return cost > 0.0 ? value / riskOfCost(cost) : std::numeric_limits<double>::infinity();
+    return ratioOf(value, riskOfCost(cost));
   }
 
   const PlanProblem& problem_;
@@ -102,6 +101,7 @@ class Enumeration {
   double best_utility_{-1.0};
   double lower_bound_{0.0};
   std::int64_t paths_{0};
+  bool capped_{false};  // something was left out for the risk cap
 };
 
 void Enumeration::run() {
@@ -126,8 +126,12 @@ void Enumeration::run() {
 
 /// True if neither the path that ends here nor any that goes on can be better than the best. Cost
 /// only grows along a path, and no path collects more than there is.
-bool Enumeration::hopeless(const State& state, double value, double remaining) const {
-  if (!(state.bound < kInfiniteCost) || riskOfCost(state.bound) > options_.risk_cap) return true;
+bool Enumeration::hopeless(const State& state, double value, double remaining) {
+  if (!(state.bound < kInfiniteCost)) return true;
+  if (riskOfCost(state.bound) > options_.risk_cap) {
+    capped_ = true;
+    return true;
+  }
   if (options_.goal) return state.bound >= best_cost_;
   return utilityFor(value + weightAt(state) * remaining, state.cost) <= best_utility_;
 }
@@ -217,6 +221,7 @@ PlanResult Exact::plan(const PlanProblem& problem, const PlanOptions& options,
   PlanResult result = options.goal ? concludeGoal(problem, options,
                                                   {.path = all.best(),
                                                    .lower_bound = all.lowerBound(),
+                                                   .capped = all.capped(),
                                                    .cut = budget.reason(),
                                                    .expanded = all.paths()})
                                    : bestOfAll(problem, options, all, budget.reason());

@@ -31,8 +31,12 @@ PlanResult withoutPath(const GoalSearch& found) {
 
 PlanResult concludeGoal(const PlanProblem& problem, const PlanOptions& options,
                         const GoalSearch& found) {
-  if (found.path.empty()) return withoutPath(found);
   PlanResult result;
+  if (found.path.empty()) {
+    result = withoutPath(found);
+    if (found.capped && found.cut == nullptr) result.text += " within the risk cap";
+    return result;
+  }
   result.path = found.path;
   describePath(problem, options, result);
   const double risk = result.report.risk;

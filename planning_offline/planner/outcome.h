@@ -18,6 +18,7 @@ struct GoalSearch {
   bool proven{true};            ///< The search's promise holds: the path has the least risk.
   double lower_bound{0.0};      ///< Cost −log(1 − risk) that no path is below.
   bool rounded{false};          ///< Proven to within lower_bound only: the search rounded costs.
+  bool capped{false};           ///< Left out paths above options.risk_cap; others keep them.
   const char* cut{nullptr};     ///< What stopped it early; null: nothing.
   std::int64_t expanded{0};
 };

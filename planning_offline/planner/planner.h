@@ -115,8 +115,13 @@ struct PlannerInfo {
 [[nodiscard]] double rewardOf(const std::vector<double>& reward,
                               const std::vector<CellIndex>& path);
 
-/// Utility of a path by the objective. Ratio: reward / risk, infinite for a reward without risk, 0
-/// without both.
+/// Reward over risk: infinite for a reward without risk, 0 without both.
+[[nodiscard]] inline double ratioOf(double reward, double risk) noexcept {
+  if (reward <= 0.0) return 0.0;
+  return risk > 0.0 ? reward / risk : std::numeric_limits<double>::infinity();
+}
+
+/// Utility of a path by the objective; the ratio is ratioOf().
 [[nodiscard]] double utilityOf(const std::vector<double>& reward,
                                const std::vector<CellIndex>& path, const RiskReport& report,
                                Objective objective);

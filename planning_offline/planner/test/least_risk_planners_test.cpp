@@ -4,6 +4,8 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -125,6 +127,31 @@ TEST(Additive, MakesTheDetourThatLocaleRisksAskFor) {
   EXPECT_FALSE(additive.risk_lower_bound.has_value());
 }
 
+TEST(Additive, LedToAGoalItsPathIsTheSame) {
+  SmallWorld ties = emptyWorld({6, 1, 5}, Connectivity::kVertices);
+  ties.build();
+  const SmallWorld random = randomWorld({.connectivity = Connectivity::kVertices}, 7);
+  const auto never = [] { return false; };
+  for (const SmallWorld* world : {&std::as_const(ties), &random}) {
+    std::vector<double> costs =
+        additiveCosts(*world->lattice, *world->risk, AdditiveWeights::kPlain);
+    for (const double more : {0.0, 0.25}) {
+      for (double& cost : costs) cost += more;
+      const AdditivePaths all = additivePaths(*world->lattice, costs, world->start, never);
+      bool less = false;
+      for (CellIndex goal = 0; goal < static_cast<CellIndex>(costs.size()); ++goal) {
+        const AdditivePaths led = additivePaths(*world->lattice, costs, world->start, never, goal);
+        EXPECT_EQ(led.pathTo(goal), all.pathTo(goal));
+        EXPECT_EQ(led.cost[static_cast<std::size_t>(goal)],
+                  all.cost[static_cast<std::size_t>(goal)]);
+        EXPECT_LE(led.expanded, all.expanded);
+        less = less || led.expanded < all.expanded;
+      }
+      EXPECT_TRUE(less);
+    }
+  }
+}
+
 TEST(Tether, KeepsWithinItsLimits) {
   // Straight on is shortest, but leads round the wall: more contacts and tether than allowed.
   SmallWorld world = picture({".........",  //
@@ -205,6 +232,17 @@ TEST(Exact, ChoosesTheBestEndByRatioWithoutAGoal) {
   EXPECT_NEAR(result.utility, 5.0 / 0.19, 1e-12);
   EXPECT_NEAR(result.reward, 5.0, 1e-15);
   EXPECT_EQ(result.utility_upper_bound, result.utility);
+}
+
+TEST(Exact, SaysWhetherTheRiskCapIsInTheWay) {
+  SmallWorld world = picture({"s...#."}, Connectivity::kFaces);
+  world.params.action_length.per_metre = 0.1;
+  world.build();
+  PlanOptions options;
+  options.risk_cap = 0.05;
+  EXPECT_EQ(planTo(*makeExact(), world, 3, options).text,
+            "no path to the goal within the risk cap");
+  EXPECT_EQ(planTo(*makeExact(), world, 5, options).text, "no path to the goal");
 }
 
 TEST(Exact, DiscountsWhatIsBehind) {

@@ -5,19 +5,12 @@
 /// real-time safe: offline only.
 
 #include <functional>
-#include <limits>
 #include <map>
 #include <vector>
 
 #include "planning_offline/planner/planner.h"
 
 namespace tautline::planning {
-
-/// Reward over 1 − e^{−cost}: infinite for a reward without risk, 0 without both.
-[[nodiscard]] inline double ratioOf(double reward, double cost) noexcept {
-  if (reward <= 0.0) return 0.0;
-  return cost > 0.0 ? reward / riskOfCost(cost) : std::numeric_limits<double>::infinity();
-}
 
 /// A path that may be the answer.
 struct Candidate {
@@ -26,7 +19,7 @@ struct Candidate {
   double expected{0.0};  ///< Σ_i reward_i Π_{j<=i} (1 − r_j)
 
   [[nodiscard]] double utility(Objective objective) const noexcept {
-    return objective == Objective::kRatio ? ratioOf(reward, cost) : expected;
+    return objective == Objective::kRatio ? ratioOf(reward, riskOfCost(cost)) : expected;
   }
 };
 

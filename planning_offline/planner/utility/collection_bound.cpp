@@ -59,8 +59,9 @@ double CollectionBound::utility(const PathPrefix& prefix, std::span<const std::u
   if (objective == Objective::kExpectedReward) return expected(prefix, available);
   double best = 0.0;
   // R − u g(C) is convex on a straight piece of R, g concave: its greatest is at a corner.
-  forCorners(prefix, relax(prefix, available), available,
-             [&](double cost, double reward) { best = std::max(best, ratioOf(reward, cost)); });
+  forCorners(prefix, relax(prefix, available), available, [&](double cost, double reward) {
+    best = std::max(best, ratioOf(reward, riskOfCost(cost)));
+  });
   return best;
 }
 
@@ -148,21 +149,23 @@ double CollectionBound::ratioFromStart(const Candidate& start) const {
     nearest = std::min(nearest, item.least_cost);
     farthest += item.leg;
   }
-  double best = start.cost <= cost_cap_ ? ratioOf(start.reward, start.cost) : 0.0;
+  double best = start.cost <= cost_cap_ ? ratioOf(start.reward, riskOfCost(start.cost)) : 0.0;
   if (items.empty() || nearest > cost_cap_) return best;
   // Between two costs of a geometric grid no path has more than the greater one buys.
   const double low = std::max(nearest, 1e-9);
   const double high = std::min({kCertain, cost_cap_, std::max(farthest, 2.0 * low)});
   const int steps = items.size() > 100'000 ? 100 : 400;
   const double factor = std::pow(std::max(1.0, high / low), 1.0 / steps);
-  best = std::max(best, ratioOf(rewardFor(low, start), nearest));
+  best = std::max(best, ratioOf(rewardFor(low, start), riskOfCost(nearest)));
   double from = low;
   for (int k = 0; k < steps; ++k) {
     const double to = from * factor;
-    best = std::max(best, ratioOf(rewardFor(to, start), from));
+    best = std::max(best, ratioOf(rewardFor(to, start), riskOfCost(from)));
     from = to;
   }
-  if (cost_cap_ > high) best = std::max(best, ratioOf(rewardFor(kInfiniteCost, start), from));
+  if (cost_cap_ > high) {
+    best = std::max(best, ratioOf(rewardFor(kInfiniteCost, start), riskOfCost(from)));
+  }
   return best * (1.0 + 1e-12);  // the grid's ends are rounded
 }
 

@@ -117,7 +117,7 @@ void UtilityRun::bound() {
   // Cells that the cancelled search did not reach may hold rewards.
   const double all = std::accumulate(problem_.reward.begin(), problem_.reward.end(), 0.0);
   const bool ratio = options_.objective == Objective::kRatio;
-  upper_bound_ = ratio ? ratioOf(all, start.cost) : all * std::exp(-start.cost);
+  upper_bound_ = ratio ? ratioOf(all, riskOfCost(start.cost)) : all * std::exp(-start.cost);
 }
 
 void UtilityRun::search(RewardSearch::Over over) {
