@@ -41,8 +41,8 @@ std::size_t mostContacts(const RiskReport& report) {
 double leastDistance(const Example& example, const std::vector<CellIndex>& path) {
   double least = std::numeric_limits<double>::infinity();
   for (const CellIndex cell : path) {
-    least =
-        std::min<double>(least, example.risk->fields().distance[static_cast<std::size_t>(cell)]);
+    const float distance = example.risk->fields().distance[static_cast<std::size_t>(cell)];
+    least = std::min(least, static_cast<double>(distance));
   }
   return least;
 }

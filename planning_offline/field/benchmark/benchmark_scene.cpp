@@ -43,8 +43,8 @@ BenchmarkScene readBuilding(const std::filesystem::path& file) {
   scene.map.resolution = tree.getResolution();
   scene.map.shape = {high[0] - low[0] + 1, high[1] - low[1] + 1, high[2] - low[2] + 1};
   const octomap::point3d corner = tree.keyToCoord(low);
-  scene.map.origin =
-      Eigen::Vector3d(corner.x(), corner.y(), corner.z()).array() - 0.5 * scene.map.resolution;
+  scene.map.origin = Eigen::Vector3f(corner.x(), corner.y(), corner.z()).cast<double>().array() -
+                     0.5 * scene.map.resolution;
   scene.map.cells.assign(scene.map.shape.size(), CellState::kUnknown);
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
     const octomap::OcTreeKey& key = leaf.getKey();
