@@ -184,9 +184,11 @@ void addRiskCommand(CLI::App& app, ExitCode& result) {
   table->excludes(map);
   verb->add_flag("--json", arguments->json, "Machine-readable output");
   verb->add_option("--csv", arguments->csv, "Write the table of states and elements (with --path)")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes(table);
   verb->add_option("--svg", arguments->svg, "Draw the path over the map (with --path)")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->excludes(table);
   verb->footer("Example: tautline-plan risk --table config/risk/tables/red_path.toml --json");
   verb->callback([arguments, &result] { result = run(*arguments); });
 }

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include <CLI/Config.hpp>
@@ -123,6 +122,26 @@ std::vector<double> rewardPerCell(const std::vector<Reward>& rewards, const Voxe
   return out;
 }
 
+/// An option whose value is one of `names`; its default is the value that is there.
+template <class Enum, std::size_t N>
+void addChoice(CLI::App& verb, const char* option, Enum& value,
+               const std::array<EnumName<Enum>, N>& names, const char* help) {
+  std::string allowed;
+  for (const auto& entry : names)
+    allowed += fmt::format("{}{}", allowed.empty() ? "" : "|", entry.name);
+  const auto set = [&value, &names, option, allowed](const std::string& text) {
+    for (const auto& entry : names) {
+      if (text != entry.name) continue;
+      value = entry.value;
+      return;
+    }
+    throw usage(option, fmt::format("is '{}'", text), allowed);
+  };
+  verb.add_option_function<std::string>(option, set, help)
+      ->type_name(allowed)
+      ->default_str(nameOf(value, names));
+}
+
 /// Half-computed maps are worth nothing: ends the program instead.
 void stopIfCancelled(const Progress& progress) {
   if (!progress.cancelled()) return;
@@ -171,13 +190,8 @@ void MapArguments::addTo(CLI::App& verb) {
   verb.add_option("--clearance", clearance, "Vehicle radius + tolerance kept from obstacles [m]")
       ->check(CLI::NonNegativeNumber);
   verb.add_flag("--unknown-free", unknown_is_free, "Unknown space may be flown through");
-  std::map<std::string, Connectivity> names;
-  for (const auto& name : kConnectivityNames) names[name.name] = name.value;
-  verb.add_option("--connectivity", connectivity,
-                  "Moves over faces (6; 4 in the plane), edges (18; 8) or vertices (26; 8)")
-      ->transform(CLI::CheckedTransformer(names).description(""))
-      ->type_name("faces|edges|vertices")
-      ->default_str("vertices");
+  addChoice(verb, "--connectivity", connectivity, kConnectivityNames,
+            "Moves over faces (6; 4 in the plane), edges (18; 8) or vertices (26; 8)");
   verb.add_option("--reel", reel, "Reel outlet x,y,z [m]; default: the scene's own");
   verb.add_option("--memory-mb", memory_mb, "Largest map [MB]")
       ->check(CLI::PositiveNumber)
@@ -259,12 +273,8 @@ void PlanArguments::addTo(CLI::App& verb) {
   verb.add_option("--rewards", rewards,
                   "TOML file of [[rewards]] with position_m, value; default: the scene's")
       ->type_name("FILE");
-  std::map<std::string, Objective> names;
-  for (const auto& name : kObjectiveNames) names[name.name] = name.value;
-  verb.add_option("--objective", objective, "What a plan without --goal maximizes")
-      ->transform(CLI::CheckedTransformer(names).description(""))
-      ->type_name("ratio|expected_reward")
-      ->default_str("ratio");
+  addChoice(verb, "--objective", objective, kObjectiveNames,
+            "What a plan without --goal maximizes");
   verb.add_option("--risk-cap", options.risk_cap, "No path of a higher risk")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

@@ -149,6 +149,9 @@ expect 2 '--output.*no reel|--output.*place of the reel' "$plan" plan --map "$wo
 expect 5 'nowhere/x.csv' "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --csv "$work/nowhere/x.csv"
 expect 2 '--straight-tether.*does not reach the goal' "$plan" plan --map "$room" --straight-tether --goal 3.5,1.1,3.5
 expect 5 'reel.*too far' "$plan" reach --map "$room" --reel 100000,0,0
+expect 2 "--connectivity: is '6'; allowed: faces.edges.vertices" "$plan" plan --map "$room" --connectivity 6 --goal 3.5,1.1,3.5
+holds "moves over faces only" "all(sum(abs(a - b) > 1e-9 for a, b in zip(p, q)) == 1 for p, q in zip(j['path'], j['path'][1:]))" \
+  "$plan" plan --map "$room" --connectivity faces --goal 3.5,1.1,3.5 --json
 expect 2 '--clearance: is not a number' "$plan" fields --map "$room" --clearance nan
 expect 5 'rewards.*inside an obstacle' "$plan" plan --map "$room" --rewards <(printf '[[rewards]]\nposition_m = [2, 1, 2]\nvalue = 1\n')
 printf '1.1 1.1 1.1\n3.1 1.1 3.1\n' >"$work/path.txt"
