@@ -65,8 +65,7 @@ ExitCode runReach(const ReachArguments& arguments) {
   ReachOptions options = arguments.options;
   options.threads = arguments.map.threads;
   const ReachMap reach =
-      computeReach(map, {space.lattice->freeCells().begin(), space.lattice->freeCells().end()},
-                   *map.reel, options, terminal.progress());
+      computeReach(map, space.lattice->freeCells(), *map.reel, options, terminal.progress());
   terminal.clear();
   if (terminal.cancelled()) {
     fmt::print(stderr, "tautline-plan: stopped; the counts would be incomplete\n");
@@ -118,7 +117,8 @@ struct NamedField {
   std::vector<double> values;
 };
 
-std::vector<NamedField> namedFields(const RiskSpace& space, const MapFields& fields) {
+std::vector<NamedField> namedFields(const RiskSpace& space) {
+  const MapFields& fields = space.risk->fields();
   const auto wide = [](const std::vector<float>& values) {
     return std::vector<double>(values.begin(), values.end());
   };
@@ -132,24 +132,46 @@ std::vector<NamedField> namedFields(const RiskSpace& space, const MapFields& fie
   return out;
 }
 
+/// One layer of cells of each field.
+void drawFields(const FieldsArguments& arguments, const VoxelMap& map,
+                const std::vector<NamedField>& shown) {
+  const int y = layerOf(map, arguments.height);
+  plot::Figure figure{.rows = shown.size() > 1 ? 2 : 1,
+                      .columns = shown.size() > 1 ? 2 : 1,
+                      .width_px = 1100,
+                      .height_px = 900};
+  for (const NamedField& field : shown) {
+    figure.panels.push_back(
+        fieldFigure(fmt::format("{} at y = {:.2f} m", field.name, heightOf(map, y)), field.label,
+                    map, field.values, y)
+            .panels.front());
+  }
+  plot::writeSvg(figure, arguments.svg);
+}
+
+/// Every free cell.
+void tabulateFields(const FieldsArguments& arguments, const MapSpace& space,
+                    const std::vector<NamedField>& shown) {
+  const VoxelMap& map = *space.map;
+  std::string text = "x_m,y_m,z_m";
+  for (const NamedField& field : shown) text += "," + field.name;
+  text += "\n";
+  for (std::size_t i = 0; i < map.shape.size(); ++i) {
+    if (!space.lattice->free(static_cast<CellIndex>(i))) continue;
+    const Eigen::Vector3d p = map.centre(static_cast<CellIndex>(i));
+    text += fmt::format("{:.6g},{:.6g},{:.6g}", p.x(), p.y(), p.z());
+    for (const NamedField& field : shown) text += fmt::format(",{:.6g}", field.values[i]);
+    text += "\n";
+  }
+  writeFileAtomically(arguments.csv, text);
+}
+
 ExitCode runFields(const FieldsArguments& arguments) {
   TerminalProgress terminal;
-  const RiskSpace space = loadRiskSpace(arguments.risk, terminal.progress());
+  const RiskSpace space = loadRiskSpace(arguments.risk, terminal.progress(), true);
   const VoxelMap& map = *space.space.map;
-  const VisibilityParams& visibility = space.risk->params().visibility;
-  const FieldRequest request{.distance = true,
-                             .width = true,
-                             .visibility = true,
-                             .visibility_directions = visibility.directions,
-                             .visibility_cap = visibility.cap};
-  const MapFields fields =
-      computeFields(map, withMapArguments(request, arguments.risk.map), terminal.progress());
   terminal.clear();
-  if (terminal.cancelled()) {
-    fmt::print(stderr, "tautline-plan: stopped; the fields would be incomplete\n");
-    return ExitCode::kFailed;
-  }
-  std::vector<NamedField> shown = namedFields(space, fields);
+  std::vector<NamedField> shown = namedFields(space);
   std::erase_if(shown, [&](const NamedField& f) {
     return arguments.field != "all" && f.name != arguments.field;
   });
@@ -159,33 +181,8 @@ ExitCode runFields(const FieldsArguments& arguments) {
                       .allowed = "distance, width, visibility, locale_risk, all"},
                      ExitCode::kUsage);
   }
-  if (!arguments.svg.empty()) {
-    const int y = layerOf(map, arguments.height);
-    plot::Figure figure{.rows = shown.size() > 1 ? 2 : 1,
-                        .columns = shown.size() > 1 ? 2 : 1,
-                        .width_px = 1100,
-                        .height_px = 900};
-    for (const NamedField& field : shown) {
-      figure.panels.push_back(
-          fieldFigure(fmt::format("{} at y = {:.2f} m", field.name, heightOf(map, y)), field.label,
-                      map, field.values, y)
-              .panels.front());
-    }
-    plot::writeSvg(figure, arguments.svg);
-  }
-  if (!arguments.csv.empty()) {
-    std::string text = "x_m,y_m,z_m";
-    for (const NamedField& field : shown) text += "," + field.name;
-    text += "\n";
-    for (std::size_t i = 0; i < map.shape.size(); ++i) {
-      if (!space.space.lattice->free(static_cast<CellIndex>(i))) continue;
-      const Eigen::Vector3d p = map.centre(static_cast<CellIndex>(i));
-      text += fmt::format("{:.6g},{:.6g},{:.6g}", p.x(), p.y(), p.z());
-      for (const NamedField& field : shown) text += fmt::format(",{:.6g}", field.values[i]);
-      text += "\n";
-    }
-    writeFileAtomically(arguments.csv, text);
-  }
+  if (!arguments.svg.empty()) drawFields(arguments, map, shown);
+  if (!arguments.csv.empty()) tabulateFields(arguments, space.space, shown);
   json out = {{"free", space.space.lattice->freeCount()},
               {"shape", {map.shape.nx, map.shape.ny, map.shape.nz}},
               {"origin_m", {map.origin.x(), map.origin.y(), map.origin.z()}},

@@ -100,16 +100,13 @@ void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space
   const auto cells = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
     return (p - map.origin) / map.resolution;
   };
-  const auto text = [](const Eigen::Vector3d& p) {
-    return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
-  };
   for (std::size_t i = 0; i < path.size(); ++i) {
     const CellIndex cell = map.indexAt(path[i]);
     if (cell == kNoCell || !space.lattice->free(cell)) {
       throw InputError({.file = file,
                         .key = fmt::format("point {}", i),
                         .problem = fmt::format(
-                            "{} is {} the map {}", text(path[i]),
+                            "{} is {} the map {}", pointText(path[i]),
                             cell == kNoCell ? "outside" : "not in the free space of", map.name)});
     }
     if (i > 0 && !lineOfSight(map.shape, blocked, cells(path[i - 1]), cells(path[i]))) {
@@ -117,7 +114,7 @@ void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space
           {.file = file,
            .key = fmt::format("points {} to {}", i - 1, i),
            .problem = fmt::format("the way from {} to {} leaves the free space of the map {}",
-                                  text(path[i - 1]), text(path[i]), map.name)});
+                                  pointText(path[i - 1]), pointText(path[i]), map.name)});
     }
   }
 }

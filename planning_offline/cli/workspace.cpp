@@ -47,10 +47,6 @@ std::vector<double> parseNumbers(const std::string& text, const char* option, st
   return out;
 }
 
-std::string pointText(const Eigen::Vector3d& p) {
-  return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
-}
-
 /// The cell of a point that the vehicle is to be in; explains why it cannot.
 CellIndex cellFor(const Eigen::Vector3d& p, const char* what, const MapSpace& space,
                   const MapArguments& arguments, ExitCode code) {
@@ -156,9 +152,8 @@ void keepStraightTether(MapSpace& space, const PlanArguments& arguments, CellInd
   const VoxelMap& map = *space.map;
   if (!map.reel) throw usage("--straight-tether", "needs a reel", {}, "--reel x,y,z");
   const MapArguments& about = arguments.risk.map;
-  const ReachMap reach =
-      computeReach(map, {space.lattice->freeCells().begin(), space.lattice->freeCells().end()},
-                   *map.reel, {.threads = about.threads}, progress);
+  const ReachMap reach = computeReach(map, space.lattice->freeCells(), *map.reel,
+                                      {.threads = about.threads}, progress);
   stopIfCancelled(progress);
   space.lattice = std::make_unique<Lattice>(map.shape, about.connectivity, reach.straight);
   const auto check = [&](CellIndex cell, const char* what) {
@@ -173,6 +168,10 @@ void keepStraightTether(MapSpace& space, const PlanArguments& arguments, CellInd
 }
 
 }  // namespace
+
+std::string pointText(const Eigen::Vector3d& p) {
+  return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
+}
 
 Eigen::Vector3d parsePoint(const std::string& text, const char* option) {
   const std::vector<double> n = parseNumbers(text, option, 3, "x,y,z in metres, e.g. 1.2,0.4,3");
@@ -243,19 +242,22 @@ void RiskArguments::addTo(CLI::App& verb) {
       ->type_name("FILE");
 }
 
-FieldRequest withMapArguments(FieldRequest request, const MapArguments& arguments) {
-  request.unknown_is_obstacle = !arguments.unknown_is_free;
-  request.threads = arguments.threads;
-  return request;
-}
-
-RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress) {
+RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress, bool all_fields) {
   const RiskParams params =
       arguments.params.empty() ? RiskParams{} : loadConfig<RiskParams>(arguments.params);
   RiskSpace out{loadMapSpace(arguments.map, progress), nullptr};
   const VoxelMap& map = *out.space.map;
-  MapFields fields =
-      computeFields(map, withMapArguments(neededFields(params, map), arguments.map), progress);
+  FieldRequest request = neededFields(params, map);
+  if (all_fields) {
+    request = {.distance = true,
+               .width = true,
+               .visibility = true,
+               .visibility_directions = params.visibility.directions,
+               .visibility_cap = params.visibility.cap};
+  }
+  request.unknown_is_obstacle = !arguments.map.unknown_is_free;
+  request.threads = arguments.map.threads;
+  MapFields fields = computeFields(map, request, progress);
   stopIfCancelled(progress);
   std::shared_ptr<TautString> string;
   if (map.reel) string = makeTautString(map, *map.reel);

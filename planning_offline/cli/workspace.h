@@ -25,6 +25,9 @@ namespace tautline::planning {
 /// "x,y,z" in metres. Throws InputError (usage) that names the option.
 [[nodiscard]] Eigen::Vector3d parsePoint(const std::string& text, const char* option);
 
+/// "(x, y, z)" for messages.
+[[nodiscard]] std::string pointText(const Eigen::Vector3d& p);
+
 /// About the map and where in it the vehicle may be.
 struct MapArguments {
   std::string map;
@@ -59,10 +62,9 @@ struct RiskSpace {
   MapSpace space;
   std::unique_ptr<RiskModel> risk;
 };
-[[nodiscard]] RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress);
-
-/// Fields of the map that the arguments ask for; shared by the risk model and the verb `fields`.
-[[nodiscard]] FieldRequest withMapArguments(FieldRequest request, const MapArguments& arguments);
+/// `all_fields`: every field and without limits, not only what the risk elements read.
+[[nodiscard]] RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress,
+                                      bool all_fields = false);
 
 /// Where to plan from and to, and with what effort.
 struct PlanArguments {

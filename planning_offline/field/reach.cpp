@@ -39,7 +39,7 @@ bool withinLimits(const Eigen::Vector3d& p_reel_cell, const ReachOptions& option
 }
 
 /// All free cells connected over faces to a free one.
-std::vector<std::uint8_t> connectedTo(const GridShape& shape, const std::vector<std::uint8_t>& free,
+std::vector<std::uint8_t> connectedTo(const GridShape& shape, std::span<const std::uint8_t> free,
                                       CellIndex seed) {
   std::vector<std::uint8_t> connected(shape.size(), 0);
   std::vector<CellIndex> open{seed};
@@ -80,13 +80,13 @@ CellIndex nearestSeen(const VoxelMap& map, const std::vector<std::uint8_t>& seen
   return nearest;
 }
 
-std::size_t countOf(const std::vector<std::uint8_t>& cells) {
+std::size_t countOf(std::span<const std::uint8_t> cells) {
   return static_cast<std::size_t>(std::count(cells.begin(), cells.end(), std::uint8_t{1}));
 }
 
 }  // namespace
 
-ReachMap computeReach(const VoxelMap& map, const std::vector<std::uint8_t>& free,
+ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                       const Eigen::Vector3d& reel, const ReachOptions& options,
                       const Progress& progress) {
   const GridShape& shape = map.shape;

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,7 +40,7 @@ struct ReachMap {
 /// `free` as freeSpace() gives it; obstacles for the tether are the map's occupied cells. The reel
 /// [m, M] may lie outside the map. Throws InputError if it is inside an obstacle or its clearance.
 /// When cancelled, cells that were not looked at yet count as not reached.
-[[nodiscard]] ReachMap computeReach(const VoxelMap& map, const std::vector<std::uint8_t>& free,
+[[nodiscard]] ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                                     const Eigen::Vector3d& reel, const ReachOptions& options,
                                     const Progress& progress);
 
