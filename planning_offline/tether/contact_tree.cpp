@@ -6,17 +6,14 @@
 #include "common/error.h"
 
 namespace tautline::planning {
-namespace {
 
 double distanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                         const Eigen::Vector3d& b) {
+                         const Eigen::Vector3d& b) noexcept {
   const Eigen::Vector3d ab = b - a;
   const double length2 = ab.squaredNorm();
   const double t = length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
   return (p - a - t * ab).norm();
 }
-
-}  // namespace
 
 ContactTree::ContactTree(const Eigen::Vector3d& reel, double grazing) : grazing_(grazing) {
   nodes_.emplace_back().point = reel;

@@ -24,6 +24,10 @@ struct ContactKey {
   friend bool operator==(const ContactKey&, const ContactKey&) = default;
 };
 
+/// Distance of p from the segment a – b.
+[[nodiscard]] double distanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                       const Eigen::Vector3d& b) noexcept;
+
 class ContactTree {
  public:
   /// `reel` in M [m]. A contact whose neighbours' chord passes it nearer than `grazing` [m] counts

@@ -14,8 +14,7 @@
 #include <Eigen/Core>
 
 #include "planning_offline/map/voxel_map.h"
-#include "planning_offline/tether/convex_edges.h"
-#include "planning_offline/tether/shrunk_solid.h"
+#include "planning_offline/tether/string_sweep.h"
 #include "planning_offline/tether/tree_string.h"
 
 namespace tautline::planning {
@@ -35,49 +34,28 @@ class PinnedString final : public TreeString {
   [[nodiscard]] std::int64_t unresolvedMoves() const noexcept override { return unresolved_; }
 
  private:
+  /// A stack of the tree as the sweep moves it.
+  class Held;
+
   // All points below are in cells.
-
-  /// A way of the string's end, and an axis whose edges cannot be met on it (kNoAxis: none).
-  struct Leg {
-    Eigen::Vector3d target;
-    int dead_axis;
-  };
-
-  /// The string meets an edge when its end is at `part` of the way, at `reach` of its free length.
-  struct Meeting {
-    double part;
-    double reach;
-    double place;  ///< Along the edge.
-    ConvexEdge edge;
-    int turn;
-  };
 
   [[nodiscard]] Eigen::Vector3d cellsOf(const Eigen::Vector3d& p_M) const;
 
   /// The stack after the string's end went from x straight to q; nothing if that takes more events
   /// than any string needs.
-  [[nodiscard]] std::optional<StackId> drag(StackId stack, Eigen::Vector3d x,
+  [[nodiscard]] std::optional<StackId> drag(StackId stack, const Eigen::Vector3d& x,
                                             const Eigen::Vector3d& q);
-  [[nodiscard]] StackId push(StackId stack, const Meeting& meeting);
-  /// At which part of the way of its end from x the string is straight over its last contact.
-  [[nodiscard]] std::optional<double> release(StackId stack, const Eigen::Vector3d& x,
-                                              const Leg& leg) const;
-  /// First edge that the string from c meets while its end goes from p along the leg.
-  [[nodiscard]] std::optional<Meeting> firstMeeting(const Eigen::Vector3d& c,
-                                                    const Eigen::Vector3d& p, const Leg& leg) const;
-  void meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                 const Eigen::Vector3d& q, std::optional<Meeting>& first) const;
+  [[nodiscard]] StackId push(StackId stack, const Bend& bend);
 
   /// True if no part of the string penetrates an obstacle.
   [[nodiscard]] bool free(StackId stack, const Eigen::Vector3d& end);
 
   Eigen::Vector3d origin_;
   double resolution_;
-  ShrunkSolid solid_;
+  StringSweep sweep_;
   std::vector<Eigen::Vector3d> anchors_;  ///< By stack: its last contact on the shrunk edge.
-  std::vector<Leg> legs_;  ///< Ways still to go, the next one last; kept for its memory.
-  std::vector<std::uint8_t> checked_;  ///< By stack: all of the string below its last contact is
-                                       ///< known to be free.
+  std::vector<std::uint8_t> checked_;     ///< By stack: all of the string below its last contact is
+                                          ///< known to be free.
   std::int64_t unresolved_{0};
 };
 

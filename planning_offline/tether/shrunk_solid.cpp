@@ -85,6 +85,47 @@ bool ShrunkSolid::has(const ConvexEdge& edge, double w,
   return (convex(k - 1) && w <= low + over(-1)) || (convex(k) && w >= high - over(1));
 }
 
+int ShrunkSolid::layerAt(int axis, double w) const noexcept {
+  const int k = std::clamp(static_cast<int>(std::lround(w)), 0, edges(axis).sizeW());
+  if (w < plane(axis, k, false)) return 2 * k - 1;
+  return w > plane(axis, k, true) ? 2 * k + 1 : 2 * k;
+}
+
+double ShrunkSolid::layerEnd(int axis, int layer) const noexcept {
+  return layer % 2 == 0 ? plane(axis, layer / 2, true) : plane(axis, (layer + 1) / 2, false);
+}
+
+bool ShrunkSolid::convexIn(const ConvexEdge& edge, int layer) const noexcept {
+  const ConvexEdges& all = edges(edge.axis);
+  const int k = layer / 2;
+  if (layer < 0 || k >= all.sizeW()) return false;
+  const unsigned mask =
+      layer % 2 != 0 ? all.quadrants(edge.u, edge.v, k) : all.joints(edge.u, edge.v, k);
+  return (mask >> edge.quadrant & 1U) != 0;
+}
+
+bool ShrunkSolid::solidIn(const ConvexEdge& edge, int layer) const noexcept {
+  const int k = layer / 2;
+  return layer >= 0 && solid(edge, k) && (layer % 2 != 0 || solid(edge, k - 1));
+}
+
+EdgeRun ShrunkSolid::runAround(const ConvexEdge& edge, double w) const noexcept {
+  int layer = layerAt(edge.axis, w);
+  // A contact may stand a little beyond an end that stops.
+  for (const double aside : {-2.0 * kStops, 2.0 * kStops}) {
+    if (!convexIn(edge, layer)) layer = layerAt(edge.axis, w + aside);
+  }
+  if (!convexIn(edge, layer)) return {.low = w, .high = w};
+  int first = layer;
+  int last = layer;
+  while (convexIn(edge, first - 1)) --first;
+  while (convexIn(edge, last + 1)) ++last;
+  return {.low = layerEnd(edge.axis, first - 1),
+          .high = layerEnd(edge.axis, last),
+          .slips_low = !solidIn(edge, first - 1),
+          .slips_high = !solidIn(edge, last + 1)};
+}
+
 double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
   const Eigen::Vector3i cell = p.array().floor().cast<int>();
   if (!occupied(cell)) return 0.0;

@@ -21,6 +21,15 @@
 
 namespace tautline::planning {
 
+/// The stretch of an edge that a contact can slide along, and whether it slips off at the ends: the
+/// obstacle ends there. If it does not, another one stands in the way.
+struct EdgeRun {
+  double low{0.0};
+  double high{0.0};
+  bool slips_low{false};
+  bool slips_high{false};
+};
+
 class ShrunkSolid {
  public:
   static constexpr double kShrinkMax = 1.5e-6;
@@ -39,10 +48,23 @@ class ShrunkSolid {
             plane(axisV(edge.axis), edge.v, edge.sideV() > 0)};
   }
 
+  /// The point of an edge at `w` along it.
+  [[nodiscard]] Eigen::Vector3d pointOn(const ConvexEdge& edge, double w) const noexcept {
+    const Eigen::Vector2d uv = across(edge);
+    Eigen::Vector3d point;
+    point[axisU(edge.axis)] = uv.x();
+    point[axisV(edge.axis)] = uv.y();
+    point[edge.axis] = w;
+    return point;
+  }
+
   /// True if there is a convex edge of this line at `w` along it, to stop a string that moves in a
   /// plane with this normal (any length).
   [[nodiscard]] bool has(const ConvexEdge& edge, double w,
                          const Eigen::Vector3d& normal) const noexcept;
+
+  /// The run of a convex edge around `w`, where it must be convex (has()).
+  [[nodiscard]] EdgeRun runAround(const ConvexEdge& edge, double w) const noexcept;
 
   /// True if the straight line goes deeper than `kDepthMax` below the obstacles' true surface. What
   /// is shorter than 1e-4 in a cell is not looked at: there the line cuts a corner.
@@ -61,6 +83,11 @@ class ShrunkSolid {
   }
   /// True if the cell in the edge's quadrant is occupied in slab w.
   [[nodiscard]] bool solid(const ConvexEdge& edge, int w) const noexcept;
+  /// The solid along an edge is made of layers: 2k + 1 is slab k, 2k the joint below it.
+  [[nodiscard]] int layerAt(int axis, double w) const noexcept;
+  [[nodiscard]] double layerEnd(int axis, int layer) const noexcept;  ///< Its upper end.
+  [[nodiscard]] bool convexIn(const ConvexEdge& edge, int layer) const noexcept;
+  [[nodiscard]] bool solidIn(const ConvexEdge& edge, int layer) const noexcept;
   /// How far a point is inside the obstacles, by the largest component of the way out; at most 1.
   [[nodiscard]] double depth(const Eigen::Vector3d& p) const noexcept;
 
