@@ -126,6 +126,27 @@ EdgeRun ShrunkSolid::runAround(const ConvexEdge& edge, double w) const noexcept 
           .slips_high = !solidIn(edge, last + 1)};
 }
 
+std::vector<ShrunkSolid::EdgeEnd> ShrunkSolid::edgesFrom(const Eigen::Vector3d& corner) const {
+  constexpr double kNear = 1e-7;
+  std::vector<EdgeEnd> found;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector2d at(corner[axisU(axis)], corner[axisV(axis)]);
+    const int u = static_cast<int>(std::lround(at.x()));
+    const int v = static_cast<int>(std::lround(at.y()));
+    if (u < 0 || v < 0 || u > edges(axis).sizeU() || v > edges(axis).sizeV()) continue;
+    for (int quadrant = 0; quadrant < 4; ++quadrant) {
+      const ConvexEdge edge{axis, u, v, quadrant};
+      if ((across(edge) - at).cwiseAbs().maxCoeff() > kNear) continue;
+      for (const int side : {-1, 1}) {
+        const bool here = convexIn(edge, layerAt(axis, corner[axis] + 2.0 * side * kNear));
+        if (here && !convexIn(edge, layerAt(axis, corner[axis] - 2.0 * side * kNear)))
+          found.push_back({edge, side});
+      }
+    }
+  }
+  return found;
+}
+
 double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
   const Eigen::Vector3i cell = p.array().floor().cast<int>();
   if (!occupied(cell)) return 0.0;

@@ -66,6 +66,15 @@ class ShrunkSolid {
   /// The run of a convex edge around `w`, where it must be convex (has()).
   [[nodiscard]] EdgeRun runAround(const ConvexEdge& edge, double w) const noexcept;
 
+  /// A convex edge that ends at a corner of the solid, and to which side of it along its axis it
+  /// lies.
+  struct EdgeEnd {
+    ConvexEdge edge;
+    int side;  ///< −1 or +1
+  };
+  /// Those that end within 1e-7 of a point.
+  [[nodiscard]] std::vector<EdgeEnd> edgesFrom(const Eigen::Vector3d& corner) const;
+
   /// True if the straight line goes deeper than `kDepthMax` below the obstacles' true surface. What
   /// is shorter than 1e-4 in a cell is not looked at: there the line cuts a corner.
   [[nodiscard]] bool penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept;

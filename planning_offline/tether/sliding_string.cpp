@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/error.h"
@@ -16,8 +17,13 @@ namespace {
 constexpr double kStill = 1e-7;   // a bend nearer to its place of rest is there
 constexpr double kBeyond = 1e-7;  // how far a bend is led off its edge's end; obstacles that go on
                                   // there are farther away (shrunk_solid.h)
-constexpr double kSame = 1e-9;    // bends of one edge so near to each other are one
-constexpr int kRoundsMax = 200;
+constexpr double kTogether = 1e-7;  // bends so near to each other are at one corner
+constexpr double kSame = 1e-9;      // bends of one edge so near to each other are one
+constexpr double kPulled = 1e-9;    // growth of length with way below which nothing pulls
+constexpr double kShorter = 1e-8;
+constexpr int kIdleMax = 8;
+constexpr int kJointRounds = 30;
+constexpr int kRoundsMax = 1000;
 
 }  // namespace
 
@@ -77,10 +83,12 @@ void SlidingString::moveTo(const Eigen::Vector3d& p_M) {
   end_ = q;
 }
 
-double SlidingString::length() const {
+double SlidingString::length() const { return lengthInCells() * resolution_; }
+
+double SlidingString::lengthInCells() const {
   double cells = (end_ - before(bends_.size())).norm();
   for (std::size_t i = 0; i < bends_.size(); ++i) cells += (bends_[i].bend.at - before(i)).norm();
-  return cells * resolution_;
+  return cells;
 }
 
 std::vector<Eigen::Vector3d> SlidingString::contacts() const {
@@ -108,31 +116,137 @@ bool SlidingString::follow(const Eigen::Vector3d& q) {
 }
 
 bool SlidingString::relax() {
-  std::vector<SlidingPoint> rest;
+  double shortest = std::numeric_limits<double>::infinity();
+  int idle = 0;  // slips since the string last got shorter
   for (int round = 0; round < kRoundsMax; ++round) {
     if (!settle()) return false;
-    rest.clear();
-    for (const Held& held : bends_) {
-      rest.push_back({held.bend.at, held.bend.edge.axis, held.run.low, held.run.high});
+    Slid slid = round < kJointRounds ? slideTogether() : slideOne();
+    if (slid == Slid::kNot) {
+      const double now = lengthInCells();
+      idle = now < shortest - kShorter ? 0 : idle + 1;
+      shortest = std::min(shortest, now);
+      if (idle > kIdleMax) return true;
+      slid = slipOne();
+      if (slid == Slid::kNot) slid = turnCorner();
     }
-    findEquilibrium(reel_, end_, rest);
-    bool still = true;
-    for (std::size_t i = rest.size(); i-- > 0 && i < bends_.size();) {
-      const int axis = rest[i].axis;
-      const double place = rest[i].at[axis];
-      const double pull = -slope(i > 0 ? rest[i - 1].at : reel_, rest[i].at, axis,
-                                 i + 1 < rest.size() ? rest[i + 1].at : end_);
-      const EdgeRun& run = bends_[i].run;
-      const bool slips = (run.slips_high && place >= run.high && pull > 0.0) ||
-                         (run.slips_low && place <= run.low && pull < 0.0);
-      if (!slips && std::abs(place - bends_[i].bend.place()) <= kStill) continue;
-      still = false;
-      const Slid slid = slide(i, place, slips);
-      if (slid == Slid::kEndless) return false;
-      if (slid == Slid::kOverOthers) break;
-    }
-    if (still) return true;
+    if (slid == Slid::kNot) return true;
+    if (slid == Slid::kEndless) return false;
   }
+  return false;
+}
+
+SlidingString::Slid SlidingString::slideTogether() {
+  std::vector<SlidingPoint> rest;
+  for (const Held& held : bends_) {
+    rest.push_back({held.bend.at, held.bend.edge.axis, held.run.low, held.run.high});
+  }
+  findEquilibrium(reel_, end_, rest);
+  Slid slid = Slid::kNot;
+  // From the vehicle on, whose move it was.
+  for (std::size_t i = rest.size(); i-- > 0 && slid <= Slid::kAlong;) {
+    const double place = rest[i].at[rest[i].axis];
+    if (std::abs(place - bends_[i].bend.place()) > kStill) slid = slide(i, place);
+  }
+  return slid;
+}
+
+SlidingString::Slid SlidingString::slideOne() {
+  const double before_all = lengthInCells();
+  for (std::size_t i = bends_.size(); i-- > 0;) {
+    const Held held = bends_[i];
+    SlidingPoint rest{held.bend.at, held.bend.edge.axis, held.run.low, held.run.high};
+    findEquilibrium(before(i), after(i), {&rest, 1});
+    const auto around = [&](const Eigen::Vector3d& at) {
+      return (at - before(i)).norm() + (after(i) - at).norm();
+    };
+    if (around(rest.at) > around(held.bend.at) - kShorter) continue;
+    // Other bends may be met on the way, and make it longer: not so a shorter way.
+    const Bends start = bends_;
+    for (double part = 1.0; part > 1e-3; part *= 0.5) {
+      const double way = part * (rest.at[rest.axis] - held.bend.place());
+      const Slid slid = slide(i, held.bend.place() + way);
+      if (slid == Slid::kEndless) return slid;
+      if (lengthInCells() < before_all) return slid;
+      bends_ = start;
+    }
+  }
+  return Slid::kNot;
+}
+
+int SlidingString::slipSign(std::size_t i) const {
+  const auto& [bend, run] = bends_[i];
+  if (run.slips_high && bend.place() >= run.high - kTogether) return 1;
+  return run.slips_low && bend.place() <= run.low + kTogether ? -1 : 0;
+}
+
+SlidingString::Slid SlidingString::slipOne() {
+  for (std::size_t end = bends_.size(); end > 0;) {
+    const std::size_t first = cornerBefore(end);
+    Eigen::Vector3d off = bends_[end - 1].bend.at;
+    bool slips = true;
+    for (std::size_t i = first; i < end; ++i) {
+      const int axis = bends_[i].bend.edge.axis;
+      const int sign = slipSign(i);
+      // Of a bend alone it is known which way it is pulled. Several at one corner hide that from
+      // each other: they are led off it, and what is left of them is seen then.
+      const bool alone = end - first == 1;
+      const double pull = -slope(before(i), bends_[i].bend.at, axis, after(i));
+      slips = slips && sign != 0 && (!alone || sign * pull > kPulled);
+      off[axis] += sign * kBeyond;
+    }
+    if (slips) return slip(first, end, off);
+    end = first;
+  }
+  return Slid::kNot;
+}
+
+std::size_t SlidingString::cornerBefore(std::size_t end) const {
+  std::size_t first = end - 1;
+  while (first > 0 && (before(first) - bends_[first].bend.at).norm() < kTogether) --first;
+  return first;
+}
+
+SlidingString::Slid SlidingString::turnCorner() {
+  for (std::size_t end = bends_.size(); end > 0; end = cornerBefore(end)) {
+    const auto& [bend, run] = bends_[end - 1];
+    if (std::min(bend.place() - run.low, run.high - bend.place()) > kTogether) continue;
+    const std::size_t first = cornerBefore(end);
+    for (const ShrunkSolid::EdgeEnd& onto : sweep_.solid().edgesFrom(bend.at)) {
+      const double pull = -slope(before(first), bend.at, onto.edge.axis, after(end - 1));
+      if (onto.side * pull > kPulled && turnCorner(first, end, onto)) return Slid::kOverOthers;
+    }
+  }
+  return Slid::kNot;
+}
+
+bool SlidingString::turnCorner(std::size_t first, std::size_t end,
+                               const ShrunkSolid::EdgeEnd& onto) {
+  const Bends start = bends_;
+  const double longest = lengthInCells() - kShorter;
+  const Eigen::Vector3d& corner = bends_[end - 1].bend.at;
+  const Eigen::Vector3d at =
+      sweep_.solid().pointOn(onto.edge, corner[onto.edge.axis] + 10.0 * onto.side * kBeyond);
+  Side reel_side(sweep_.solid(), reel_);
+  Side end_side(sweep_.solid(), end_);
+  bool led = sweepBoth(reel_side, end_side, first, end, at);
+  // The edge holds the string if it lies within the bend.
+  const Eigen::Vector2d in = across(onto.edge.axis, at - reel_side.anchor());
+  const Eigen::Vector2d out = across(onto.edge.axis, end_side.anchor() - at);
+  const int turn = in.x() * out.y() - in.y() * out.x() > 0.0 ? 1 : -1;
+  const auto ahead = [&](const Eigen::Vector2d& way) {
+    return turn * onto.edge.sideV() * way.x() >= 0.0 && -turn * onto.edge.sideU() * way.y() >= 0.0;
+  };
+  if (led && ahead(in) && ahead(out)) {
+    reel_side.push({at, onto.edge, turn});
+  } else {
+    led = led && sweep_.drag(reel_side, at, end_side.anchor());
+  }
+  bends_ = std::move(reel_side.bends());
+  bends_.insert(bends_.end(), end_side.bends().rbegin(), end_side.bends().rend());
+  while (led && settle() && lengthInCells() > longest && slideOne() != Slid::kNot) {
+  }
+  if (led && lengthInCells() < longest) return true;
+  bends_ = start;
   return false;
 }
 
@@ -152,32 +266,43 @@ bool SlidingString::settle() {
   return false;
 }
 
-SlidingString::Slid SlidingString::slide(std::size_t i, double place, bool slips) {
-  const Held held = bends_[i];
-  double to = place;
-  if (slips) to += place >= held.run.high ? kBeyond : -kBeyond;
-  const Eigen::Vector3d& x = held.bend.at;
-  const Eigen::Vector3d q = sweep_.solid().pointOn(held.bend.edge, to);
-  const auto at = bends_.begin() + static_cast<std::ptrdiff_t>(i);
-  Side reel_side(sweep_.solid(), reel_);
-  reel_side.bends().assign(bends_.begin(), at);
-  Side end_side(sweep_.solid(), end_);
-  end_side.bends().assign(bends_.rbegin(), std::make_reverse_iterator(at + 1));
+bool SlidingString::sweepBoth(Side& reel_side, Side& end_side, std::size_t first, std::size_t end,
+                              const Eigen::Vector3d& to) {
+  const auto at = [this](std::size_t i) { return bends_.begin() + static_cast<std::ptrdiff_t>(i); };
   const auto turnOver = [&end_side] {
-    for (Held& other : end_side.bends()) other.bend.turn = -other.bend.turn;
+    for (Held& held : end_side.bends()) held.bend.turn = -held.bend.turn;
   };
+  reel_side.bends().assign(bends_.begin(), at(first));
+  end_side.bends().assign(bends_.rbegin(), std::make_reverse_iterator(at(end)));
   turnOver();
-  if (!sweep_.drag(reel_side, x, q) || !sweep_.drag(end_side, x, q)) return Slid::kEndless;
+  const bool led = sweep_.drag(reel_side, bends_[first].bend.at, to) &&
+                   sweep_.drag(end_side, bends_[end - 1].bend.at, to);
   turnOver();
-  if (slips && !sweep_.drag(reel_side, q, end_side.anchor())) return Slid::kEndless;
-  const bool same = !slips && !reel_side.changed() && !end_side.changed();
+  return led;
+}
+
+SlidingString::Slid SlidingString::slide(std::size_t i, double place) {
+  Held held = bends_[i];
+  held.bend.at[held.bend.edge.axis] = place;
+  Side reel_side(sweep_.solid(), reel_);
+  Side end_side(sweep_.solid(), end_);
+  if (!sweepBoth(reel_side, end_side, i, i + 1, held.bend.at)) return Slid::kEndless;
   bends_ = std::move(reel_side.bends());
-  if (!slips) {
-    bends_.push_back(held);
-    bends_.back().bend.at = q;
-  }
+  bends_.push_back(held);
   bends_.insert(bends_.end(), end_side.bends().rbegin(), end_side.bends().rend());
-  return same ? Slid::kAlong : Slid::kOverOthers;
+  return reel_side.changed() || end_side.changed() ? Slid::kOverOthers : Slid::kAlong;
+}
+
+SlidingString::Slid SlidingString::slip(std::size_t first, std::size_t end,
+                                        const Eigen::Vector3d& off) {
+  Side reel_side(sweep_.solid(), reel_);
+  Side end_side(sweep_.solid(), end_);
+  const bool led = sweepBoth(reel_side, end_side, first, end, off) &&
+                   sweep_.drag(reel_side, off, end_side.anchor());
+  if (!led) return Slid::kEndless;
+  bends_ = std::move(reel_side.bends());
+  bends_.insert(bends_.end(), end_side.bends().rbegin(), end_side.bends().rend());
+  return Slid::kOverOthers;
 }
 
 bool SlidingString::straighten(std::size_t i) {

@@ -23,6 +23,8 @@ class SlidingString {
   /// the reel may not stand there (checkedReel()).
   SlidingString(const VoxelMap& map, const Eigen::Vector3d& reel);
 
+  [[nodiscard]] Eigen::Vector3d reel() const { return origin_ + resolution_ * reel_; }
+
   /// The vehicle goes straight to p [M, m]; finite, within kFarthest of the map's origin.
   void moveTo(const Eigen::Vector3d& p_M);
 
@@ -52,15 +54,41 @@ class SlidingString {
   /// Takes out the bends that hold nothing. False if that does not end.
   [[nodiscard]] bool settle();
   enum class Slid : std::uint8_t {
+    kNot,
     kAlong,       ///< The same bends, one of them elsewhere.
     kOverOthers,  ///< Bends came or went.
     kEndless,     ///< More events than any string needs.
   };
-  /// Leads bend i along its edge, and off its end if `slips`, while both parts of the string sweep.
-  [[nodiscard]] Slid slide(std::size_t i, double place, bool slips);
+  /// All bends to where the whole string rests, one after the other, until the first that changes
+  /// which there are. Quick, but a bend may be led too far, and others come and go.
+  [[nodiscard]] Slid slideTogether();
+  /// One bend towards where it rests between its neighbours, as far as that makes the string
+  /// shorter: an end is sure.
+  [[nodiscard]] Slid slideOne();
+  /// One bend off the end of its edge, if one is pulled over it, or all those at one corner.
+  [[nodiscard]] Slid slipOne();
+  /// At which end of its edge that it can slip off bend i is: +1, −1; 0: at none.
+  [[nodiscard]] int slipSign(std::size_t i) const;
+  /// From a corner of an obstacle onto another edge that begins there, if that makes the string
+  /// shorter.
+  [[nodiscard]] Slid turnCorner();
+  [[nodiscard]] bool turnCorner(std::size_t first, std::size_t end,
+                                const ShrunkSolid::EdgeEnd& onto);
+  /// First of the bends that are at one place with bend end − 1.
+  [[nodiscard]] std::size_t cornerBefore(std::size_t end) const;
+  /// Leads bend i along its edge, while both parts of the string sweep.
+  [[nodiscard]] Slid slide(std::size_t i, double place);
+  /// Takes bends first … end − 1, which are at one place, off to a place just beside it, and pulls
+  /// the string straight there.
+  [[nodiscard]] Slid slip(std::size_t first, std::size_t end, const Eigen::Vector3d& off);
+  /// Leads the string's point at bends first … end − 1 to another place: what becomes of the bends
+  /// on both sides of it. False if a sweep does not end.
+  [[nodiscard]] bool sweepBoth(Side& reel_side, Side& end_side, std::size_t first, std::size_t end,
+                               const Eigen::Vector3d& to);
   /// Takes bend i out and pulls the string straight there.
   [[nodiscard]] bool straighten(std::size_t i);
   [[nodiscard]] bool free() const;
+  [[nodiscard]] double lengthInCells() const;
 
   [[nodiscard]] const Eigen::Vector3d& before(std::size_t i) const {
     return i > 0 ? bends_[i - 1].bend.at : reel_;

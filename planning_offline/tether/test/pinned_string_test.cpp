@@ -8,46 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "planning_offline/tether/planar_string.h"
+#include "planning_offline/tether/test/string_line.h"
 #include "planning_offline/tether/test/walks.h"
 
 namespace tautline::planning {
 namespace {
-
-/// How deep a point is inside the union of the occupied cells, by the largest component of the way
-/// out; up to one cell.
-double depth(const VoxelMap& map, const Eigen::Vector3d& p_M) {
-  const Eigen::Vector3d p = (p_M - map.origin) / map.resolution;
-  const Eigen::Vector3i at = p.array().floor().cast<int>();
-  double least = 1.0;
-  for (int n = 0; n < 27; ++n) {
-    const Eigen::Vector3i cell = at + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-    const bool solid =
-        map.shape.contains(cell) &&
-        map.cells[static_cast<std::size_t>(map.shape.index(cell))] == CellState::kOccupied;
-    if (solid) continue;
-    const Eigen::Vector3d low = cell.cast<double>();
-    const Eigen::Vector3d out = (low - p).cwiseMax(p - low - Eigen::Vector3d::Ones());
-    least = std::min(least, std::max(out.maxCoeff(), 0.0));
-  }
-  return least;
-}
-
-/// Deepest sample of a string; samples are 0.04 cells apart.
-double deepest(const VoxelMap& map, const TautString& string, StackId stack,
-               const Eigen::Vector3d& end) {
-  std::vector<Eigen::Vector3d> points = string.contacts(stack);
-  points.insert(points.begin(), string.reel());
-  points.push_back(end);
-  double most = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const Eigen::Vector3d d = points[i] - points[i - 1];
-    const int samples = 1 + static_cast<int>(d.norm() / (0.04 * map.resolution));
-    for (int k = 0; k <= samples; ++k) {
-      most = std::max(most, depth(map, points[i - 1] + d * k / samples));
-    }
-  }
-  return most;
-}
 
 TEST(PinnedString, EqualsTheGoldenContacts) {
   std::ifstream in(TAUTLINE_SOURCE_DIR "/planning_offline/tether/test/golden/contact_3d.json");
@@ -136,24 +101,12 @@ TEST(PinnedString, EqualsThePlanarStringOverExtrudedPlans) {
   EXPECT_GT(contacts, 30000);
 }
 
-/// Clutter and boxes by turns.
-VoxelMap spaceMap(std::uint64_t seed, walks::Random& random) {
-  const GridShape shape{8, 8, 8};
-  return seed % 2 == 0 ? walks::clutteredMap(shape, 4 + static_cast<int>(seed % 9), random)
-                       : walks::boxesMap(shape, 14, 4, random);
-}
-
-std::vector<Eigen::Vector3d> spaceWalk(const VoxelMap& map, int steps, walks::Random& random) {
-  return walks::centres(
-      map, walks::randomWalk(walks::freeLattice(map, Connectivity::kVertices), steps, random));
-}
-
 TEST(PinnedString, StaysOutsideObstaclesAndBetweenItsBoundsOnRandomWalks) {
   int contacts = 0;
   for (std::uint64_t seed = 1; seed <= 240; ++seed) {
     walks::Random random(seed);
-    const VoxelMap map = spaceMap(seed, random);
-    const std::vector<Eigen::Vector3d> walk = spaceWalk(map, 60, random);
+    const VoxelMap map = walks::spaceMap(seed, random);
+    const std::vector<Eigen::Vector3d> walk = walks::spaceWalk(map, 60, random);
     PinnedString string(map, walk.front());
     StackId stack = kStraight;
     double flown = 0.0;
@@ -161,7 +114,8 @@ TEST(PinnedString, StaysOutsideObstaclesAndBetweenItsBoundsOnRandomWalks) {
       stack = string.move(stack, walk[i - 1], walk[i]);
       flown += (walk[i] - walk[i - 1]).norm();
       const double length = string.length(stack, walk[i]);
-      ASSERT_LE(deepest(map, string, stack, walk[i]), 1e-4) << "seed " << seed << " step " << i;
+      ASSERT_LE(deepest(map, stringLine(string.reel(), string.contacts(stack), walk[i])), 1e-4)
+          << "seed " << seed << " step " << i;
       ASSERT_GE(length, (walk[i] - string.reel()).norm() - 1e-5) << "seed " << seed;
       ASSERT_LE(length, flown + 1e-5) << "seed " << seed;
       contacts += string.contactCount(stack);
@@ -176,8 +130,8 @@ TEST(PinnedString, ResolvesEveryMoveOfManyWalksAndIsDeterministic) {
   int straight_again = 0;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     walks::Random random(seed);
-    const VoxelMap map = spaceMap(seed, random);
-    const std::vector<Eigen::Vector3d> walk = spaceWalk(map, 60, random);
+    const VoxelMap map = walks::spaceMap(seed, random);
+    const std::vector<Eigen::Vector3d> walk = walks::spaceWalk(map, 60, random);
     PinnedString string(map, walk.front());
     PinnedString again(map, walk.front());
     StackId stack = kStraight;
@@ -220,8 +174,8 @@ TEST(PinnedString, LongMovesEqualTheirPieces) {
   int contacts = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     walks::Random random(seed);
-    const VoxelMap map = spaceMap(seed, random);
-    Eigen::Vector3d at = spaceWalk(map, 0, random).front();
+    const VoxelMap map = walks::spaceMap(seed, random);
+    Eigen::Vector3d at = walks::spaceWalk(map, 0, random).front();
     PinnedString string(map, at);
     StackId stack = kStraight;
     for (int tries = 0; tries < 200; ++tries) {
@@ -251,8 +205,8 @@ TEST(PinnedString, CountsMovesThroughObstacles) {
   std::int64_t unresolved = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     walks::Random random(seed);
-    const VoxelMap map = spaceMap(2 * seed, random);
-    const std::vector<Eigen::Vector3d> walk = spaceWalk(map, 0, random);
+    const VoxelMap map = walks::spaceMap(2 * seed, random);
+    const std::vector<Eigen::Vector3d> walk = walks::spaceWalk(map, 0, random);
     PinnedString string(map, walk.front());
     StackId stack = kStraight;
     Eigen::Vector3d at = walk.front();

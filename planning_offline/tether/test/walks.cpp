@@ -89,4 +89,14 @@ std::vector<Eigen::Vector3d> centres(const VoxelMap& map, const std::vector<Cell
   return points;
 }
 
+VoxelMap spaceMap(std::uint64_t seed, Random& random) {
+  const GridShape shape{8, 8, 8};
+  return seed % 2 == 0 ? clutteredMap(shape, 4 + static_cast<int>(seed % 9), random)
+                       : boxesMap(shape, 14, 4, random);
+}
+
+std::vector<Eigen::Vector3d> spaceWalk(const VoxelMap& map, int steps, Random& random) {
+  return centres(map, randomWalk(freeLattice(map, Connectivity::kVertices), steps, random));
+}
+
 }  // namespace tautline::planning::walks

@@ -39,4 +39,11 @@ void occupy(VoxelMap& map, const Eigen::Vector3i& cell);
 [[nodiscard]] std::vector<Eigen::Vector3d> centres(const VoxelMap& map,
                                                    const std::vector<CellIndex>& cells);
 
+/// 8³ cells of clutter or boxes, by turns.
+[[nodiscard]] VoxelMap spaceMap(std::uint64_t seed, Random& random);
+
+/// Centres of a random walk with all 26 directions.
+[[nodiscard]] std::vector<Eigen::Vector3d> spaceWalk(const VoxelMap& map, int steps,
+                                                     Random& random);
+
 }  // namespace tautline::planning::walks
