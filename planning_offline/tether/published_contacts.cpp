@@ -169,7 +169,11 @@ void needRange(const char* key, double value, const Range& range) {
        .allowed = std::to_string(range.min) + " to " + std::to_string(range.max) + " cells"});
 }
 
-/// Points in cells; in a planar map in the middle of the plane.
+Eigen::Vector3d metres(const VoxelMap& map, const Eigen::Vector3d& p_cells) {
+  return map.origin + map.resolution * p_cells;
+}
+
+/// A point in M in cells; in a planar map in the middle of the plane.
 Eigen::Vector3d cellsOf(const VoxelMap& map, const Eigen::Vector3d& p_M, const std::string& key) {
   Eigen::Vector3d p = (p_M - map.origin) / map.resolution;
   if (map.shape.planar()) p.y() = 0.5;
@@ -195,7 +199,8 @@ std::vector<PublishedState> publishedContacts(const VoxelMap& map, const Eigen::
   needRange("sample_step", options.sample_step, kStepRange);
   needRange("standoff", options.standoff, kStandoffRange);
   const Obstacles obstacles(map, options);
-  std::vector<Eigen::Vector3d> cp_stack{cellsOf(map, checkedReel(map, reel), "reel")};
+  std::vector<Eigen::Vector3d> cp_stack{cellsOf(map, reel, "reel")};
+  (void)checkedReel(map, metres(map, cp_stack.front()));
   std::vector<PublishedState> states;
   states.reserve(path.size());
   for (const Eigen::Vector3d& waypoint : path) {
@@ -220,7 +225,7 @@ std::vector<PublishedState> publishedContacts(const VoxelMap& map, const Eigen::
     if (options.attachment == Attachment::kThisWaypoint) attached = cp_stack;
     state.pierces = pierces(obstacles, attached, wp);
     for (std::size_t i = 1; i < attached.size(); ++i)
-      state.contacts.push_back(map.origin + map.resolution * attached[i]);
+      state.contacts.push_back(metres(map, attached[i]));
     states.push_back(std::move(state));
   }
   return states;

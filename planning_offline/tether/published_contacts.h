@@ -48,7 +48,8 @@ struct PublishedOptions {
   /// From one point to the next of the lines that CheckCollision() draws, counted from the contact
   /// [cells], 0.001 to 1. What is thinner than it can be missed.
   double sample_step{0.1};
-  /// How far from both faces beside its edge a contact is put [cells], 0 to 0.5. Not for kEntry.
+  /// How far from both faces beside its edge a contact is put [cells], 0 to 0.5. Not for kEntry. If
+  /// another cell touches the edge from across, the contact is inside that one.
   double standoff{0.1};
 };
 
