@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Where a reel may stand. Not real-time safe: offline only.
+/// Where a reel may stand: what is inside an obstacle and what only on its surface. Not real-time
+/// safe: offline only.
 
 #include <Eigen/Core>
 
@@ -13,9 +14,12 @@ namespace tautline::planning {
 /// integer arithmetic of the planar string goes.
 inline constexpr double kFarthest = 500'000.0;
 
+/// True if all cells that a point touches are occupied: on the surface of an obstacle it is
+/// outside. In cells from the map's origin; may be off the map, which has nothing there.
+[[nodiscard]] bool insideObstacle(const VoxelMap& map, const Eigen::Vector3d& p_cells);
+
 /// The reel, in M [m], if it may stand there; else throws InputError: it is too far away, not
-/// finite, or inside an obstacle, which means that all cells it touches are occupied. It may stand
-/// on an obstacle's surface.
+/// finite, or inside an obstacle. It may stand on an obstacle's surface.
 [[nodiscard]] const Eigen::Vector3d& checkedReel(const VoxelMap& map, const Eigen::Vector3d& reel);
 
 }  // namespace tautline::planning

@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/mission/test/flight_log.h"
 #include "common/mission/test/test_problem.h"
 
 namespace tautline {
@@ -152,19 +153,6 @@ std::string sixDigits(const Eigen::Vector3d& p) {
   std::array<char, 96> text{};
   std::snprintf(text.data(), text.size(), "%g %g %g", p.x(), p.y(), p.z());
   return text.data();
-}
-
-/// One file of the archive of flight logs; empty if it cannot be unpacked.
-std::string flightLog(const std::filesystem::path& archive, const std::string& name) {
-  const std::string command = "tar -xJOf '" + archive.string() + "' './" + name + "' 2>/dev/null";
-  std::string text;
-  if (FILE* pipe = popen(command.c_str(), "r")) {
-    std::array<char, 4096> buffer{};
-    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
-      text.append(buffer.data(), count);
-    pclose(pipe);
-  }
-  return text;
 }
 
 /// The rule for six numbers (scale 0.33, axes yzx, no shift) against what the vehicle's own log

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "planning_offline/examples/test/example.h"
+#include "planning_offline/examples/test/shipped_path.h"
 #include "planning_offline/risk/table_file.h"
 
 namespace tautline::planning {
@@ -47,17 +46,6 @@ double leastDistance(const Example& example, const std::vector<CellIndex>& path)
   return least;
 }
 
-std::vector<Eigen::Vector3d> readPoints(const std::string& file) {
-  std::ifstream in(std::string(TAUTLINE_SOURCE_DIR) + "/config/" + file);
-  std::vector<Eigen::Vector3d> points;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream row(line);
-    Eigen::Vector3d p;
-    if (row >> p.x() >> p.y() >> p.z()) points.push_back(p);
-  }
-  return points;
-}
-
 std::vector<std::vector<double>> published(const std::string& name) {
   return readRiskTable(std::string(TAUTLINE_SOURCE_DIR) + "/config/risk/tables/" + name + ".toml");
 }
@@ -69,7 +57,7 @@ TEST(WorkedExample, EveryStateIsFinishedWithThePublishedProbability) {
       loadExample("scenes/dissertation/worked_example.scene.toml",
                   "risk/dissertation_worked_example.toml", Connectivity::kVertices);
   const RiskReport report =
-      example.risk->evaluate(readPoints("scenes/dissertation/worked_example.path.txt"));
+      example.risk->evaluate(shippedPath("scenes/dissertation/worked_example.path.txt"));
   const std::array<double, 12> finish{0.99, 1.0,  1.0,  0.96, 0.96, 0.98,
                                       0.89, 0.95, 0.97, 0.97, 0.94, 0.93};
   ASSERT_EQ(report.states.size(), finish.size());
@@ -85,7 +73,7 @@ TEST(WorkedExample, TheStateBelowTheObstacleHasItsThreePublishedElements) {
       loadExample("scenes/dissertation/worked_example.scene.toml",
                   "risk/dissertation_worked_example.toml", Connectivity::kVertices);
   const RiskReport report =
-      example.risk->evaluate(readPoints("scenes/dissertation/worked_example.path.txt"));
+      example.risk->evaluate(shippedPath("scenes/dissertation/worked_example.path.txt"));
   const StateRisk& s_75 = report.states.at(6);
   EXPECT_NEAR(s_75.elements[at(RiskElement::kDistance)], 0.04, 0.005);
   EXPECT_NEAR(s_75.elements[at(RiskElement::kTurn)], 0.04, 0.005);
