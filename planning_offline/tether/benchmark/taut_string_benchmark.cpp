@@ -1,4 +1,4 @@
-// Time of one step of the taut string on random maps, and, by turns with it, of one look at every
+// Time of one step of the taut strings on random maps, and, by turns with it, of one look at every
 // convex edge of the map against the triangle of that step: what a string without an index would
 // do at least once a step.
 
@@ -10,6 +10,7 @@
 #include <benchmark/benchmark.h>
 
 #include "planning_offline/tether/convex_edges.h"
+#include "planning_offline/tether/sliding_string.h"
 #include "planning_offline/tether/taut_string.h"
 #include "planning_offline/tether/test/walks.h"
 
@@ -77,6 +78,43 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
+/// The string of searches and missions: exact in the plane, pinned in space.
+class InternedFlight {
+ public:
+  InternedFlight(const VoxelMap& map, const Eigen::Vector3d& start)
+      : string_(makeTautString(map, start)), at_(start) {}
+  void moveTo(const Eigen::Vector3d& to) {
+    stack_ = string_->move(stack_, at_, to);
+    at_ = to;
+  }
+  [[nodiscard]] Eigen::Vector3d anchor() const { return string_->anchor(stack_); }
+  [[nodiscard]] int contacts() const { return string_->contactCount(stack_); }
+  [[nodiscard]] double length() const { return string_->length(stack_, at_); }
+  [[nodiscard]] std::int64_t unresolved() const { return string_->unresolvedMoves(); }
+
+ private:
+  std::unique_ptr<TautString> string_;
+  StackId stack_{kStraight};
+  Eigen::Vector3d at_;
+};
+
+class SlidingFlight {
+ public:
+  SlidingFlight(const VoxelMap& map, const Eigen::Vector3d& start) : string_(map, start) {}
+  void moveTo(const Eigen::Vector3d& to) { string_.moveTo(to); }
+  [[nodiscard]] Eigen::Vector3d anchor() const {
+    const std::vector<Eigen::Vector3d> contacts = string_.contacts();
+    return contacts.empty() ? string_.reel() : contacts.back();
+  }
+  [[nodiscard]] int contacts() const { return static_cast<int>(string_.contacts().size()); }
+  [[nodiscard]] double length() const { return string_.length(); }
+  [[nodiscard]] std::int64_t unresolved() const { return string_.unresolvedMoves(); }
+
+ private:
+  SlidingString string_;
+};
+
+template <class Flight>
 void walkAll(benchmark::State& state, const GridShape& shape) {
   walks::Random random(1);
   const VoxelMap map = walks::clutteredMap(shape, static_cast<int>(state.range(1)), random);
@@ -91,16 +129,15 @@ void walkAll(benchmark::State& state, const GridShape& shape) {
   for (auto _ : state) {
     const std::vector<Eigen::Vector3d> walk =
         walks::centres(map, walks::randomWalk(lattice, 400, random));
-    const std::unique_ptr<TautString> string = makeTautString(map, walk.front());
-    StackId stack = kStraight;
+    Flight flight(map, walk.front());
     for (std::size_t i = 1; i < walk.size(); ++i) {
-      const Eigen::Vector3d anchor = string->anchor(stack);
+      const Eigen::Vector3d anchor = flight.anchor();
       const Clock::time_point step = Clock::now();
-      stack = string->move(stack, walk[i - 1], walk[i]);
+      flight.moveTo(walk[i]);
       steps.push_back(microseconds(step));
       steps_sum += steps.back();
-      contacts += string->contactCount(stack);
-      length += string->length(stack, walk[i]) / map.resolution;
+      contacts += flight.contacts();
+      length += flight.length() / map.resolution;
       if (i % 16 != 0) continue;
       const auto cells = [&map](const Eigen::Vector3d& p) {
         return Eigen::Vector3d((p - map.origin) / map.resolution);
@@ -109,7 +146,7 @@ void walkAll(benchmark::State& state, const GridShape& shape) {
       benchmark::DoNotOptimize(hits(edges, cells(anchor), cells(walk[i - 1]), cells(walk[i])));
       scans.push_back(microseconds(scan));
     }
-    unresolved += string->unresolvedMoves();
+    unresolved += flight.unresolved();
   }
   const auto count = static_cast<double>(steps.size());
   const double step = median(steps);
@@ -131,7 +168,7 @@ void walkAll(benchmark::State& state, const GridShape& shape) {
 
 void BM_PlanarStep(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
-  walkAll(state, {side, 1, side});
+  walkAll<InternedFlight>(state, {side, 1, side});
 }
 BENCHMARK(BM_PlanarStep)
     ->Args({100, 8})
@@ -139,11 +176,21 @@ BENCHMARK(BM_PlanarStep)
     ->Iterations(40)
     ->Unit(benchmark::kMillisecond);
 
-void BM_SpaceStep(benchmark::State& state) {
+void BM_PinnedStep(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
-  walkAll(state, {side, side, side});
+  walkAll<InternedFlight>(state, {side, side, side});
 }
-BENCHMARK(BM_SpaceStep)
+BENCHMARK(BM_PinnedStep)
+    ->Args({40, 8})
+    ->Args({100, 50})
+    ->Iterations(20)
+    ->Unit(benchmark::kMillisecond);
+
+void BM_SlidingStep(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  walkAll<SlidingFlight>(state, {side, side, side});
+}
+BENCHMARK(BM_SlidingStep)
     ->Args({40, 8})
     ->Args({100, 50})
     ->Iterations(20)
