@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "common/error.h"
 #include "planning_offline/tether/edge_equilibrium.h"
@@ -43,6 +46,28 @@ TEST(SlidingString, IsTheShortestOfItsHomotopyClassAmongPrisms) {
     ASSERT_EQ(string.unresolvedMoves(), 0) << "seed " << seed;
   }
   EXPECT_GT(contacts, 30000);
+}
+
+TEST(SlidingString, EqualsTheGoldenRefinement) {
+  std::ifstream in(TAUTLINE_SOURCE_DIR "/planning_offline/tether/test/golden/contact_3d.json");
+  const nlohmann::json golden = nlohmann::json::parse(in);
+  for (const auto& scene : golden.at("cases")) {
+    const auto& shape = scene.at("shape");
+    VoxelMap map = walks::emptyMap({shape[0], shape[1], shape[2]});
+    for (const auto& cell : scene.at("occupied"))
+      walks::occupy(map, {cell[0].get<int>(), cell[1].get<int>(), cell[2].get<int>()});
+    const auto metres = [&map](const nlohmann::json& p) {
+      return Eigen::Vector3d(map.origin + map.resolution * Eigen::Vector3d(p[0], p[1], p[2]));
+    };
+    SlidingString string(map, metres(scene.at("waypoints")[0].at("p")));
+    for (const auto& waypoint : scene.at("waypoints")) string.moveTo(metres(waypoint.at("p")));
+    const auto& wanted = scene.at("final_geodesic_same_edges");
+    EXPECT_NEAR(string.length() / map.resolution, wanted.at("length").get<double>(), 1e-4);
+    const std::vector<Eigen::Vector3d> contacts = string.contacts();
+    ASSERT_EQ(contacts.size() + 2, wanted.at("points").size()) << scene.at("id");
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      EXPECT_LE((contacts[k] - metres(wanted.at("points")[k + 1])).norm(), 1e-4) << scene.at("id");
+  }
 }
 
 TEST(SlidingString, IsTheSameOnTheWayBackAmongPrisms) {
