@@ -22,6 +22,11 @@ namespace tautline::planning {
 [[nodiscard]] constexpr int axisU(int w) noexcept { return (w + 1) % 3; }
 [[nodiscard]] constexpr int axisV(int w) noexcept { return (w + 2) % 3; }
 
+/// A point seen along an axis: (u, v).
+[[nodiscard]] inline Eigen::Vector2d across(int axis, const Eigen::Vector3d& p) noexcept {
+  return {p[axisU(axis)], p[axisV(axis)]};
+}
+
 /// A line of edges with the obstacle in the same quadrant.
 struct ConvexEdge {
   int axis{0};

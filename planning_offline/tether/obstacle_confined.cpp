@@ -36,11 +36,8 @@ bool cellConfined(const Eigen::Vector3i& cell, const std::array<Eigen::Vector3d,
                   double half) {
   const Eigen::Vector3d centre = cell.cast<double>().array() + 0.5;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto projected = [axis](const Eigen::Vector3d& p) {
-      return Eigen::Vector2d(p[axisU(axis)], p[axisV(axis)]);
-    };
-    if (!overlap({projected(triangle[0]), projected(triangle[1]), projected(triangle[2])},
-                 projected(centre), half))
+    if (!overlap({across(axis, triangle[0]), across(axis, triangle[1]), across(axis, triangle[2])},
+                 across(axis, centre), half))
       return false;
   }
   return true;

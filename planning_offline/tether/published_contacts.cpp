@@ -96,7 +96,7 @@ std::optional<Eigen::Vector3d> Obstacles::collision(const Eigen::Vector3d& a,
 double shortestOver(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const ConvexEdge& edge) {
   const Eigen::Vector2d corner(edge.u, edge.v);
   const auto away = [&](const Eigen::Vector3d& p) {
-    return (Eigen::Vector2d(p[axisU(edge.axis)], p[axisV(edge.axis)]) - corner).norm();
+    return (across(edge.axis, p) - corner).norm();
   };
   const double sum = away(a) + away(b);
   const double part = sum > 0.0 ? away(a) / sum : 0.5;

@@ -39,11 +39,6 @@ struct Bend {
 /// A contact nearer than this to its neighbours' chord [cells] is straight.
 inline constexpr double kGrazing = 1e-5;
 
-/// A point seen along an axis: (u, v).
-[[nodiscard]] inline Eigen::Vector2d across(int axis, const Eigen::Vector3d& p) noexcept {
-  return {p[axisU(axis)], p[axisV(axis)]};
-}
-
 /// Twice the signed area that the string a – bend – b spans about the bend's edge, positive while
 /// it bends round it.
 [[nodiscard]] double bendArea(const Bend& bend, const Eigen::Vector3d& a,
