@@ -20,9 +20,9 @@ constexpr double kBeyond = 1e-7;  // how far a bend is led off its edge's end; o
 constexpr double kTogether = 1e-7;  // bends so near to each other are at one corner
 constexpr double kSame = 1e-9;      // bends of one edge so near to each other are one
 constexpr double kPulled = 1e-9;    // growth of length with way below which nothing pulls
-constexpr double kShorter = 1e-8;
-constexpr int kIdleMax = 8;
-constexpr int kJointRounds = 30;
+constexpr double kShorter = 1e-8;   // less is no gain
+constexpr int kIdleMax = 8;         // slips without a gain, then the string hangs at a corner
+constexpr int kJointRounds = 30;    // of the quick way to the place of rest, then the sure one
 constexpr int kRoundsMax = 1000;
 
 }  // namespace
@@ -243,7 +243,12 @@ bool SlidingString::turnCorner(std::size_t first, std::size_t end,
   }
   bends_ = std::move(reel_side.bends());
   bends_.insert(bends_.end(), end_side.bends().rbegin(), end_side.bends().rend());
-  while (led && settle() && lengthInCells() > longest && slideOne() != Slid::kNot) {
+  for (int round = 0; led && round < kJointRounds; ++round) {
+    led = settle();
+    if (!led || lengthInCells() < longest) break;
+    const Slid slid = slideOne();
+    if (slid == Slid::kNot) break;
+    led = slid != Slid::kEndless;
   }
   if (led && lengthInCells() < longest) return true;
   bends_ = start;
