@@ -81,7 +81,8 @@ std::optional<double> PinnedString::release(StackId stack, const Eigen::Vector3d
 }
 
 void PinnedString::meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                             const Eigen::Vector3d& q, std::optional<Meeting>& first) const {
+                             const Eigen::Vector3d& q, const Stretches& near,
+                             std::optional<Meeting>& first) const {
   const Eigen::Vector2d c2 = across(axis, c);
   const Eigen::Vector2d to_p = across(axis, p) - c2;
   const Eigen::Vector2d to_q = across(axis, q) - c2;
@@ -131,15 +132,20 @@ void PinnedString::meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Ve
       if (solid_.has(edge, place, normal)) first = Meeting{part, reach, place, edge, turn};
     }
   };
-  visitGridPoints(c2, c2 + to_p, c2 + to_q, edges.sizeU(), edges.sizeV(), kMargin, consider);
+  for (const auto& [part_low, part_high] : near) {
+    visitGridPointsBetween(c2, to_p, to_q, part_low, part_high, edges.sizeU(), edges.sizeV(),
+                           kMargin, consider);
+  }
 }
 
 std::optional<PinnedString::Meeting> PinnedString::firstMeeting(const Eigen::Vector3d& c,
                                                                 const Eigen::Vector3d& p,
                                                                 const Leg& leg) const {
   std::optional<Meeting> first;
+  const Stretches near = solid_.nearEdges(c, p, leg.target);
+  if (near.empty()) return first;
   for (int axis = 0; axis < 3; ++axis) {
-    if (axis != leg.dead_axis) meetEdges(axis, c, p, leg.target, first);
+    if (axis != leg.dead_axis) meetEdges(axis, c, p, leg.target, near, first);
   }
   return first;
 }

@@ -15,6 +15,7 @@
 
 #include "planning_offline/map/voxel_map.h"
 #include "planning_offline/tether/convex_edges.h"
+#include "planning_offline/tether/near_field.h"
 #include "planning_offline/tether/shrunk_solid.h"
 #include "planning_offline/tether/tree_string.h"
 
@@ -65,8 +66,10 @@ class PinnedString final : public TreeString {
   /// First edge that the string from c meets while its end goes from p along the leg.
   [[nodiscard]] std::optional<Meeting> firstMeeting(const Eigen::Vector3d& c,
                                                     const Eigen::Vector3d& p, const Leg& leg) const;
+  /// Looks at the stretches of the string that come near edges.
   void meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                 const Eigen::Vector3d& q, std::optional<Meeting>& first) const;
+                 const Eigen::Vector3d& q, const Stretches& near,
+                 std::optional<Meeting>& first) const;
 
   /// True if no part of the string penetrates an obstacle.
   [[nodiscard]] bool free(StackId stack, const Eigen::Vector3d& end);

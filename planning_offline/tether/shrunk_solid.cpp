@@ -34,6 +34,53 @@ std::vector<double> movedPlanes(int axis, int cells) {
   return planes;
 }
 
+/// Marks all cells from lo to hi, both included, that are on the grid.
+void mark(const GridShape& shape, const Eigen::Vector3i& lo, const Eigen::Vector3i& hi,
+          std::vector<std::uint8_t>& marked) {
+  const Eigen::Vector3i first = lo.cwiseMax(0);
+  const Eigen::Vector3i last =
+      hi.cwiseMin(Eigen::Vector3i(shape.nx, shape.ny, shape.nz) - Eigen::Vector3i::Ones());
+  for (int z = first.z(); z <= last.z(); ++z) {
+    for (int y = first.y(); y <= last.y(); ++y) {
+      for (int x = first.x(); x <= last.x(); ++x) {
+        marked[static_cast<std::size_t>(shape.index({x, y, z}))] = 1;
+      }
+    }
+  }
+}
+
+std::vector<std::uint8_t> touchingEdges(const GridShape& shape,
+                                        const std::array<ConvexEdges, 3>& all) {
+  std::vector<std::uint8_t> marked(shape.size(), 0);
+  for (const ConvexEdges& edges : all) {
+    Eigen::Vector3i at;
+    int& w = at[edges.axis()];
+    int& v = at[axisV(edges.axis())];
+    int& u = at[axisU(edges.axis())];
+    for (w = 0; w < edges.sizeW(); ++w) {
+      for (v = 0; v <= edges.sizeV(); ++v) {
+        for (u = 0; u <= edges.sizeU(); ++u) {
+          if ((edges.quadrants(u, v, w) | edges.joints(u, v, w)) == 0) continue;
+          Eigen::Vector3i end = at;
+          ++end[edges.axis()];
+          mark(shape, at - Eigen::Vector3i::Ones(), end, marked);
+        }
+      }
+    }
+  }
+  return marked;
+}
+
+std::vector<std::uint8_t> touchingOccupied(const VoxelMap& map) {
+  std::vector<std::uint8_t> marked(map.shape.size(), 0);
+  for (std::size_t i = 0; i < map.cells.size(); ++i) {
+    if (map.cells[i] != CellState::kOccupied) continue;
+    const Eigen::Vector3i cell = map.shape.cell(static_cast<CellIndex>(i));
+    mark(map.shape, cell - Eigen::Vector3i::Ones(), cell + Eigen::Vector3i::Ones(), marked);
+  }
+  return marked;
+}
+
 /// True if a plane through the end of an edge goes through the inside of the cell there, which lies
 /// to `side` of that end along the edge.
 bool cutsCorner(const Eigen::Vector3d& normal, const ConvexEdge& edge, int side) {
@@ -53,7 +100,9 @@ ShrunkSolid::ShrunkSolid(const VoxelMap& map)
       cells_(map.cells),
       edges_{ConvexEdges(map, 0), ConvexEdges(map, 1), ConvexEdges(map, 2)},
       planes_{movedPlanes(0, map.shape.nx), movedPlanes(1, map.shape.ny),
-              movedPlanes(2, map.shape.nz)} {}
+              movedPlanes(2, map.shape.nz)},
+      near_edges_(map.shape, touchingEdges(map.shape, edges_)),
+      near_cells_(map.shape, touchingOccupied(map)) {}
 
 bool ShrunkSolid::solid(const ConvexEdge& edge, int w) const noexcept {
   Eigen::Vector3i cell;
@@ -103,6 +152,15 @@ double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
 }
 
 bool ShrunkSolid::penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept {
+  for (const auto& [low, high] : near_cells_.near(a, b, b)) {
+    const Eigen::Vector3d from = a + low * (b - a);
+    if (penetratedAnywhere(from, high < 1.0 ? Eigen::Vector3d(a + high * (b - a)) : b)) return true;
+  }
+  return false;
+}
+
+bool ShrunkSolid::penetratedAnywhere(const Eigen::Vector3d& a,
+                                     const Eigen::Vector3d& b) const noexcept {
   constexpr double kShortest = 1e-4;
   const Eigen::Vector3d d = b - a;
   const double length = d.norm();

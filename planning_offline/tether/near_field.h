@@ -1,0 +1,82 @@
+#pragma once
+
+/// @file
+/// Where a sweeping string comes near what it could meet: a cheap test before the detailed ones. It
+/// is exact in that nothing within kMargin of the string is ever missed; it may call more of the
+/// string near than is. Lengths in cells. Not real-time safe: offline only.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "planning_offline/map/voxel_map.h"
+
+namespace tautline::planning {
+
+/// Parts of a string's free length, 0 at its anchor and 1 at its end; from the end to the anchor,
+/// without overlap. If there are too many, neighbours are joined.
+class Stretches {
+ public:
+  struct Stretch {
+    double low;
+    double high;
+  };
+
+  /// One that lies nearer to the anchor than all before it, or ends where the last one begins.
+  void add(double low, double high) noexcept {
+    if (size_ > 0 && (size_ == kMost || list_[size_ - 1].low <= high)) {
+      list_[size_ - 1].low = low;
+    } else {
+      list_[size_++] = {low, high};
+    }
+  }
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] const Stretch* begin() const noexcept { return list_.data(); }
+  [[nodiscard]] const Stretch* end() const noexcept { return list_.data() + size_; }
+
+ private:
+  static constexpr std::size_t kMost = 8;
+  std::array<Stretch, kMost> list_;
+  std::size_t size_{0};
+};
+
+/// Distances from features whose coordinates are whole numbers, such as edges of the grid and
+/// cells: one byte a cell, in the maximum norm. If two such boxes do not touch they are at least 1
+/// apart, so cells counted to the nearest one that touches a feature are no more than the distance.
+class NearField {
+ public:
+  static constexpr double kMargin = 1e-3;
+
+  /// `touching`: one byte a cell, not 0 if the cell touches a feature, be it in a corner only.
+  /// Features are within the grid.
+  NearField(const GridShape& shape, const std::vector<std::uint8_t>& touching);
+
+  /// A lower bound of the distance from a point, which may be outside the grid, to the nearest
+  /// feature; at most kFarthest.
+  [[nodiscard]] int distance(const Eigen::Vector3d& p) const noexcept {
+    return cells_[static_cast<std::size_t>(
+        (within(p.z(), shape_.nz) * shape_.ny + within(p.y(), shape_.ny)) * shape_.nx +
+        within(p.x(), shape_.nx))];
+  }
+  static constexpr int kFarthest = 255;
+
+  /// Where the free part of a string from the anchor c comes nearer than kMargin to a feature while
+  /// its end goes straight from p to q. With p = q: the segment from c to p.
+  [[nodiscard]] Stretches near(const Eigen::Vector3d& c, const Eigen::Vector3d& p,
+                               const Eigen::Vector3d& q) const noexcept;
+
+ private:
+  /// Coordinate of the cell; of the nearest one for points outside, which are no nearer.
+  [[nodiscard]] static int within(double x, int cells) noexcept {
+    return static_cast<int>(std::clamp(x, 0.0, cells - 1.0));
+  }
+
+  GridShape shape_;
+  std::vector<std::uint8_t> cells_;
+};
+
+}  // namespace tautline::planning
