@@ -48,37 +48,56 @@ void sweep(const GridShape& shape, std::vector<std::uint8_t>& cells, bool forwar
   }
 }
 
-}  // namespace
-
-NearField::NearField(const GridShape& shape, const std::vector<std::uint8_t>& touching)
-    : shape_(shape), cells_(touching.size(), kFarthest) {
-  TAUTLINE_CHECK(touching.size() == shape.size() && !touching.empty());
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    if (touching[i] != 0) cells_[i] = 0;
+/// Cells to the nearest marked one.
+std::vector<std::uint8_t> chessboardDistance(const GridShape& shape,
+                                             const std::vector<std::uint8_t>& marked) {
+  TAUTLINE_CHECK(marked.size() == shape.size() && !marked.empty());
+  std::vector<std::uint8_t> cells(marked.size(), NearField::kFarthest);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (marked[i] != 0) cells[i] = 0;
   }
-  sweep(shape_, cells_, true);
-  sweep(shape_, cells_, false);
+  sweep(shape, cells, true);
+  sweep(shape, cells, false);
+  return cells;
 }
 
-Stretches NearField::near(const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                          const Eigen::Vector3d& q) const noexcept {
-  constexpr double kLeast = 0.5;  // of a step that pays
-  Stretches out;
+}  // namespace
+
+NearField::NearField(const GridShape& shape, const std::vector<std::uint8_t>& touching_edges,
+                     const std::vector<std::uint8_t>& touching_occupied)
+    : shape_(shape), cells_(shape.size()) {
+  const std::vector<std::uint8_t> edges = chessboardDistance(shape, touching_edges);
+  const std::vector<std::uint8_t> occupied = chessboardDistance(shape, touching_occupied);
+  for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i] = {edges[i], occupied[i]};
+}
+
+NearField::Near NearField::near(const Eigen::Vector3d& c, const Eigen::Vector3d& p,
+                                const Eigen::Vector3d& q) const noexcept {
+  constexpr double kStep = 1.0;   // where something is near
+  constexpr double kLeast = 0.4;  // of a step where nothing is, to pay
+  Near out;
   // At a part t of its length the string is within t · half of the point t of its middle position.
   const Eigen::Vector3d along = 0.5 * (p + q) - c;
   const double half = 0.5 * (q - p).lpNorm<Eigen::Infinity>();
   const double length = along.lpNorm<Eigen::Infinity>();
-  double t = 1.0;
-  while (t > 0.0) {
-    const double room = distance(c + t * along) - t * half - kMargin;
-    const double clear = t - room / length;
-    if (room >= kLeast && clear < t) {
-      t = clear;
-    } else {
-      const double low = length > 0.0 ? std::max(t - kLeast / length, 0.0) : 0.0;
-      out.add(low < t ? low : 0.0, t);
-      t = low < t ? low : 0.0;
+  if (!(length > kStep)) {
+    out.edges.add(0.0, 1.0);
+    out.occupied.add(0.0, 1.0);
+    return out;
+  }
+  const double per_cell = 1.0 / length;
+  for (double t = 1.0; t > 0.0;) {
+    const Distance d = distance(c + t * along);
+    const double used = t * half + kMargin;
+    const double room = d.occupied - used;
+    if (room >= kLeast) {  // edges are no nearer
+      t -= room * per_cell;
+      continue;
     }
+    const double low = std::max(t - kStep * per_cell, 0.0);
+    out.occupied.add(low, t);
+    if (d.edges - used < kStep) out.edges.add(low, t);
+    t = low;
   }
   return out;
 }

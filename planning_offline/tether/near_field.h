@@ -44,30 +44,40 @@ class Stretches {
   std::size_t size_{0};
 };
 
-/// Distances from features whose coordinates are whole numbers, such as edges of the grid and
-/// cells: one byte a cell, in the maximum norm. If two such boxes do not touch they are at least 1
-/// apart, so cells counted to the nearest one that touches a feature are no more than the distance.
+/// Distances from the map's convex edges and from its occupied cells, a byte a cell each, in the
+/// maximum norm. Edges and cells have whole coordinates: two of them that do not touch are at least
+/// 1 apart, so the cells counted to the nearest one that touches a feature are no more than the
+/// distance from it.
 class NearField {
  public:
   static constexpr double kMargin = 1e-3;
 
-  /// `touching`: one byte a cell, not 0 if the cell touches a feature, be it in a corner only.
-  /// Features are within the grid.
-  NearField(const GridShape& shape, const std::vector<std::uint8_t>& touching);
+  /// One byte a cell, not 0 if the cell touches a feature, be it in a corner only. Features are
+  /// within the grid, and every edge belongs to an occupied cell.
+  NearField(const GridShape& shape, const std::vector<std::uint8_t>& touching_edges,
+            const std::vector<std::uint8_t>& touching_occupied);
 
-  /// A lower bound of the distance from a point, which may be outside the grid, to the nearest
-  /// feature; at most kFarthest.
-  [[nodiscard]] int distance(const Eigen::Vector3d& p) const noexcept {
+  /// Lower bounds of the distances from the nearest feature; at most kFarthest.
+  struct Distance {
+    std::uint8_t edges;
+    std::uint8_t occupied;
+  };
+  static constexpr std::uint8_t kFarthest = 255;
+  /// At a point, which may be outside the grid.
+  [[nodiscard]] Distance distance(const Eigen::Vector3d& p) const noexcept {
     return cells_[static_cast<std::size_t>(
         (within(p.z(), shape_.nz) * shape_.ny + within(p.y(), shape_.ny)) * shape_.nx +
         within(p.x(), shape_.nx))];
   }
-  static constexpr int kFarthest = 255;
 
-  /// Where the free part of a string from the anchor c comes nearer than kMargin to a feature while
-  /// its end goes straight from p to q. With p = q: the segment from c to p.
-  [[nodiscard]] Stretches near(const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                               const Eigen::Vector3d& q) const noexcept;
+  struct Near {
+    Stretches edges;
+    Stretches occupied;
+  };
+  /// Where the free part of a string from the anchor c comes nearer than kMargin to edges and to
+  /// occupied cells while its end goes straight from p to q. With p = q: the segment from c to p.
+  [[nodiscard]] Near near(const Eigen::Vector3d& c, const Eigen::Vector3d& p,
+                          const Eigen::Vector3d& q) const noexcept;
 
  private:
   /// Coordinate of the cell; of the nearest one for points outside, which are no nearer.
@@ -76,7 +86,7 @@ class NearField {
   }
 
   GridShape shape_;
-  std::vector<std::uint8_t> cells_;
+  std::vector<Distance> cells_;
 };
 
 }  // namespace tautline::planning

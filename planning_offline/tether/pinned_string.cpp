@@ -81,8 +81,7 @@ std::optional<double> PinnedString::release(StackId stack, const Eigen::Vector3d
 }
 
 void PinnedString::meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                             const Eigen::Vector3d& q, const Stretches& near,
-                             std::optional<Meeting>& first) const {
+                             const Eigen::Vector3d& q, std::optional<Meeting>& first) const {
   const Eigen::Vector2d c2 = across(axis, c);
   const Eigen::Vector2d to_p = across(axis, p) - c2;
   const Eigen::Vector2d to_q = across(axis, q) - c2;
@@ -132,7 +131,7 @@ void PinnedString::meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Ve
       if (solid_.has(edge, place, normal)) first = Meeting{part, reach, place, edge, turn};
     }
   };
-  for (const auto& [part_low, part_high] : near) {
+  for (const auto& [part_low, part_high] : near_.edges) {
     visitGridPointsBetween(c2, to_p, to_q, part_low, part_high, edges.sizeU(), edges.sizeV(),
                            kMargin, consider);
   }
@@ -140,12 +139,12 @@ void PinnedString::meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Ve
 
 std::optional<PinnedString::Meeting> PinnedString::firstMeeting(const Eigen::Vector3d& c,
                                                                 const Eigen::Vector3d& p,
-                                                                const Leg& leg) const {
+                                                                const Leg& leg) {
   std::optional<Meeting> first;
-  const Stretches near = solid_.nearEdges(c, p, leg.target);
-  if (near.empty()) return first;
+  near_ = solid_.field().near(c, p, leg.target);
+  if (near_.edges.empty()) return first;
   for (int axis = 0; axis < 3; ++axis) {
-    if (axis != leg.dead_axis) meetEdges(axis, c, p, leg.target, near, first);
+    if (axis != leg.dead_axis) meetEdges(axis, c, p, leg.target, first);
   }
   return first;
 }
@@ -182,10 +181,12 @@ std::optional<StackId> PinnedString::drag(StackId stack, Eigen::Vector3d x,
 }
 
 bool PinnedString::free(StackId stack, const Eigen::Vector3d& end) {
-  if (solid_.penetrated(anchors_[stack], end)) return false;
+  if (solid_.penetrated(anchors_[stack], end, near_.occupied)) return false;
   for (StackId s = stack; s != kStraight; s = tree().pop(s)) {
     if (s < checked_.size() && checked_[s] != 0) return true;
-    if (solid_.penetrated(anchors_[tree().pop(s)], anchors_[s])) return false;
+    const Eigen::Vector3d& from = anchors_[tree().pop(s)];
+    const Stretches near = solid_.field().near(from, anchors_[s], anchors_[s]).occupied;
+    if (solid_.penetrated(from, anchors_[s], near)) return false;
   }
   if (stack >= checked_.size()) checked_.resize(stack + std::size_t{1}, 0);
   checked_[stack] = 1;

@@ -65,19 +65,19 @@ class PinnedString final : public TreeString {
                                               const Leg& leg) const;
   /// First edge that the string from c meets while its end goes from p along the leg.
   [[nodiscard]] std::optional<Meeting> firstMeeting(const Eigen::Vector3d& c,
-                                                    const Eigen::Vector3d& p, const Leg& leg) const;
-  /// Looks at the stretches of the string that come near edges.
+                                                    const Eigen::Vector3d& p, const Leg& leg);
+  /// Looks where near_ says that edges are.
   void meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                 const Eigen::Vector3d& q, const Stretches& near,
-                 std::optional<Meeting>& first) const;
+                 const Eigen::Vector3d& q, std::optional<Meeting>& first) const;
 
-  /// True if no part of the string penetrates an obstacle.
+  /// True if no part of the string penetrates an obstacle, its end having been dragged to `end`.
   [[nodiscard]] bool free(StackId stack, const Eigen::Vector3d& end);
 
   Eigen::Vector3d origin_;
   double resolution_;
   ShrunkSolid solid_;
   std::vector<Eigen::Vector3d> anchors_;  ///< By stack: its last contact on the shrunk edge.
+  NearField::Near near_;                  ///< Of the last sweep, which ends as the string does.
   std::vector<Leg> legs_;  ///< Ways still to go, the next one last; kept for its memory.
   std::vector<std::uint8_t> checked_;  ///< By stack: all of the string below its last contact is
                                        ///< known to be free.

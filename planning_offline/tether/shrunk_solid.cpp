@@ -101,8 +101,7 @@ ShrunkSolid::ShrunkSolid(const VoxelMap& map)
       edges_{ConvexEdges(map, 0), ConvexEdges(map, 1), ConvexEdges(map, 2)},
       planes_{movedPlanes(0, map.shape.nx), movedPlanes(1, map.shape.ny),
               movedPlanes(2, map.shape.nz)},
-      near_edges_(map.shape, touchingEdges(map.shape, edges_)),
-      near_cells_(map.shape, touchingOccupied(map)) {}
+      field_(map.shape, touchingEdges(map.shape, edges_), touchingOccupied(map)) {}
 
 bool ShrunkSolid::solid(const ConvexEdge& edge, int w) const noexcept {
   Eigen::Vector3i cell;
@@ -151,8 +150,9 @@ double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
   return least;
 }
 
-bool ShrunkSolid::penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept {
-  for (const auto& [low, high] : near_cells_.near(a, b, b)) {
+bool ShrunkSolid::penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                             const Stretches& near) const noexcept {
+  for (const auto& [low, high] : near) {
     const Eigen::Vector3d from = a + low * (b - a);
     if (penetratedAnywhere(from, high < 1.0 ? Eigen::Vector3d(a + high * (b - a)) : b)) return true;
   }

@@ -45,15 +45,14 @@ class ShrunkSolid {
   [[nodiscard]] bool has(const ConvexEdge& edge, double w,
                          const Eigen::Vector3d& normal) const noexcept;
 
-  /// Where a string from c comes near any edge while its end goes from p to q.
-  [[nodiscard]] Stretches nearEdges(const Eigen::Vector3d& c, const Eigen::Vector3d& p,
-                                    const Eigen::Vector3d& q) const noexcept {
-    return near_edges_.near(c, p, q);
-  }
+  /// Where edges and cells are near a string.
+  [[nodiscard]] const NearField& field() const noexcept { return field_; }
 
   /// True if the straight line goes deeper than `kDepthMax` below the obstacles' true surface. What
-  /// is shorter than 1e-4 in a cell is not looked at: there the line cuts a corner.
-  [[nodiscard]] bool penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept;
+  /// is shorter than 1e-4 in a cell is not looked at: there the line cuts a corner. `near` says
+  /// where it may be near occupied cells, 0 at a and 1 at b.
+  [[nodiscard]] bool penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                const Stretches& near) const noexcept;
   static constexpr double kDepthMax = 1e-5;
 
  private:
@@ -68,7 +67,7 @@ class ShrunkSolid {
   }
   /// True if the cell in the edge's quadrant is occupied in slab w.
   [[nodiscard]] bool solid(const ConvexEdge& edge, int w) const noexcept;
-  /// penetrated() without the cheap test.
+  /// penetrated() for a line that is near cells all along.
   [[nodiscard]] bool penetratedAnywhere(const Eigen::Vector3d& a,
                                         const Eigen::Vector3d& b) const noexcept;
   /// How far a point is inside the obstacles, by the largest component of the way out; at most 1.
@@ -78,8 +77,7 @@ class ShrunkSolid {
   std::vector<CellState> cells_;
   std::array<ConvexEdges, 3> edges_;
   std::array<std::vector<double>, 3> planes_;  ///< Two a grid plane: below, above.
-  NearField near_edges_;
-  NearField near_cells_;  ///< Of the occupied cells.
+  NearField field_;
 };
 
 }  // namespace tautline::planning
