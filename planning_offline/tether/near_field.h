@@ -82,7 +82,7 @@ class NearField {
  private:
   /// Coordinate of the cell; of the nearest one for points outside, which are no nearer.
   [[nodiscard]] static int within(double x, int cells) noexcept {
-    return static_cast<int>(std::clamp(x, 0.0, cells - 1.0));
+    return std::clamp(static_cast<int>(x), 0, cells - 1);
   }
 
   GridShape shape_;

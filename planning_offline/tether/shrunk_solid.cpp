@@ -22,6 +22,8 @@ double scattered(std::uint64_t n) {
   return static_cast<double>((n ^ n >> 31U) >> 11U) * 0x1p-53;
 }
 
+Eigen::Vector3i cellOf(const Eigen::Vector3d& p) { return p.array().floor().cast<int>(); }
+
 std::vector<double> movedPlanes(int axis, int cells) {
   std::vector<double> planes;
   for (int k = 0; k <= cells; ++k) {
@@ -134,7 +136,7 @@ bool ShrunkSolid::has(const ConvexEdge& edge, double w,
 }
 
 double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
-  const Eigen::Vector3i cell = p.array().floor().cast<int>();
+  const Eigen::Vector3i cell = cellOf(p);
   if (!occupied(cell)) return 0.0;
   double least = 1.0;
   for (int n = 0; n < 27; ++n) {
@@ -188,11 +190,12 @@ bool ShrunkSolid::penetratedAnywhere(const Eigen::Vector3d& a,
       if (crossing <= part) crossing = (plane + std::copysign(1.0, d[axis]) - a[axis]) / d[axis];
       next = std::min(next, crossing);
     }
-    if ((next - part) * length > kShortest) {
+    const auto at = [&](double place) -> Eigen::Vector3d {
+      return a + (part + place * (next - part)) * d;
+    };
+    if ((next - part) * length > kShortest && occupied(cellOf(at(0.5)))) {
       // At two places: a line can be deepest at either end, but not in between only.
-      for (const double place : {0.25, 0.75}) {
-        if (depth(a + (part + place * (next - part)) * d) > kDepthMax) return true;
-      }
+      if (depth(at(0.25)) > kDepthMax || depth(at(0.75)) > kDepthMax) return true;
     }
     part = next;
   }
