@@ -183,7 +183,7 @@ std::optional<StackId> PinnedString::drag(StackId stack, Eigen::Vector3d x,
 bool PinnedString::free(StackId stack, const Eigen::Vector3d& end) {
   if (solid_.penetrated(anchors_[stack], end, near_.occupied)) return false;
   for (StackId s = stack; s != kStraight; s = tree().pop(s)) {
-    if (s < checked_.size() && checked_[s] != 0) return true;
+    if (s < checked_.size() && checked_[s] != 0) break;
     const Eigen::Vector3d& from = anchors_[tree().pop(s)];
     const Stretches near = solid_.field().near(from, anchors_[s], anchors_[s]).occupied;
     if (solid_.penetrated(from, anchors_[s], near)) return false;
