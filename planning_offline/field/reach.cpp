@@ -30,12 +30,21 @@ std::vector<std::uint8_t> tetherObstacles(const VoxelMap& map, const ReachOption
   return cells;
 }
 
-bool withinLimits(const Eigen::Vector3d& p_reel_cell, const ReachOptions& options) {
-  const double length = p_reel_cell.norm();
-  if (options.length_max > 0.0 && length > options.length_max) return false;
-  const double elevation =
-      std::atan2(p_reel_cell.y(), std::hypot(p_reel_cell.x(), p_reel_cell.z()));
-  return elevation * 180.0 / std::numbers::pi >= options.elevation_min;
+/// Which of the cells that a straight tether reaches are within the limits.
+void countWithinLimits(const VoxelMap& map, const Eigen::Vector3d& reel,
+                       const ReachOptions& options, ReachMap& reach) {
+  for (std::size_t n = 0; n < reach.straight.size(); ++n) {
+    if (reach.straight[n] == 0) continue;
+    const Eigen::Vector3d way = map.centre(static_cast<CellIndex>(n)) - reel;
+    const bool short_enough = options.length_max <= 0.0 || way.norm() <= options.length_max;
+    const bool high_enough =
+        options.elevation_min <= -90.0 ||
+        std::atan2(way.y(), std::hypot(way.x(), way.z())) * 180.0 / std::numbers::pi >=
+            options.elevation_min;
+    reach.straight_within_length += short_enough ? 1U : 0U;
+    reach.straight_within_elevation += high_enough ? 1U : 0U;
+    reach.straight_within_limits += short_enough && high_enough ? 1U : 0U;
+  }
 }
 
 /// All free cells connected over faces to a free one.
@@ -112,7 +121,6 @@ ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
 
   ReachMap reach;
   reach.straight.resize(shape.size(), 0);
-  std::vector<std::uint8_t> seen(shape.size(), 0);
   const bool complete =
       parallelFor(shape.nz, options.threads, progress, {"straight tether"}, [&](int z) {
         const CellIndex begin = shape.index({0, 0, z});
@@ -120,16 +128,15 @@ ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
           const auto n = static_cast<std::size_t>(i);
           if (free[n] == 0) continue;
           const Eigen::Vector3d target = shape.cell(i).cast<double>().array() + 0.5;
-          if (!lineOfSight(shape, obstacles, reel_cells, target)) continue;
-          seen[n] = 1;
-          if (withinLimits(map.resolution * (target - reel_cells), options)) reach.straight[n] = 1;
+          if (lineOfSight(shape, obstacles, reel_cells, target)) reach.straight[n] = 1;
         }
       });
-  const CellIndex take_off = complete ? nearestSeen(map, seen, reel) : kNoCell;
-  reach.with_contacts = take_off == kNoCell ? std::vector<std::uint8_t>(shape.size(), 0)
-                                            : connectedTo(shape, free, take_off);
+  reach.take_off = complete ? nearestSeen(map, reach.straight, reel) : kNoCell;
+  reach.with_contacts = reach.take_off == kNoCell ? std::vector<std::uint8_t>(shape.size(), 0)
+                                                  : connectedTo(shape, free, reach.take_off);
   reach.free = countOf(free);
   reach.straight_count = countOf(reach.straight);
+  countWithinLimits(map, reel, options, reach);
   reach.with_contacts_count = countOf(reach.with_contacts);
   return reach;
 }

@@ -17,7 +17,7 @@
 namespace tautline::planning {
 
 struct ReachOptions {
-  double length_max{0.0};        ///< Of a straight tether [m]; 0 = no limit.
+  double length_max{0.0};        ///< Of the tether [m]; 0 = no limit.
   double elevation_min{-90.0};   ///< Of a straight tether, seen from the reel [deg].
   double tether_clearance{0.0};  ///< The tether also keeps out of cells whose centre is nearer to
                                  ///< an occupied cell than this [m]; the published figure inflates
@@ -25,15 +25,19 @@ struct ReachOptions {
   int threads{0};                ///< 0 = all cores.
 };
 
+/// What is reached with contacts under limits needs the taut string: planner/tether_reach.h.
 struct ReachMap {
   std::vector<std::uint8_t> straight;  ///< One a cell: free, and the straight tether from the reel
                                        ///< to its centre meets no interior of an obstacle cell
-                                       ///< (touching faces is allowed) and is within the limits.
-  std::vector<std::uint8_t>
-      with_contacts;  ///< Free and connected over faces to where the vehicle takes off: the free
-                      ///< cell nearest to the reel that a straight tether of any length reaches.
+                                       ///< (touching faces is allowed), whatever its length.
+  std::vector<std::uint8_t> with_contacts;  ///< Free and connected over faces to `take_off`.
+  CellIndex take_off{kNoCell};  ///< Where the vehicle takes off: the cell nearest to the reel that
+                                ///< a straight tether reaches; kNoCell if it reaches none.
   std::size_t free{0};
   std::size_t straight_count{0};
+  std::size_t straight_within_length{0};     ///< Of these, by length_max alone,
+  std::size_t straight_within_elevation{0};  ///< by elevation_min alone,
+  std::size_t straight_within_limits{0};     ///< by both.
   std::size_t with_contacts_count{0};
 };
 

@@ -6,6 +6,7 @@
 /// elements. Not real-time safe: offline only.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "planning_offline/map/lattice.h"
@@ -14,7 +15,19 @@
 
 namespace tautline::planning {
 
+/// A directional component of a walk: a cell and the direction it was entered by, kNoDirection for
+/// the start before the first step.
+struct WalkEnd {
+  CellIndex cell{kNoCell};
+  Direction incoming{kNoDirection};
+  friend bool operator==(const WalkEnd&, const WalkEnd&) = default;
+};
+
 /// What the searches found. Costs include the start's own (RiskModel::startCost()).
+///
+/// The walks to all cells are a tree over components, not over cells: two walks that come through
+/// the same cell share their beginning only if they entered it by the same direction. `lastOf()`
+/// and `before()` are that tree; ties are broken the same way every time.
 class LeastRiskTree {
  public:
   virtual ~LeastRiskTree() = default;
@@ -22,8 +35,15 @@ class LeastRiskTree {
   /// Cost −log(1 − risk) of the best walk to a cell; infinite if there is none.
   [[nodiscard]] virtual double costTo(CellIndex cell) const = 0;
 
-  /// That walk, start first; empty if there is none. Ties are broken the same way every time.
-  [[nodiscard]] virtual std::vector<CellIndex> pathTo(CellIndex cell) const = 0;
+  /// The component that this walk ends in; nothing if there is none.
+  [[nodiscard]] virtual std::optional<WalkEnd> lastOf(CellIndex cell) const = 0;
+
+  /// The component before one that such a walk goes through and that is not the start's: the same
+  /// for all of them.
+  [[nodiscard]] virtual WalkEnd before(const WalkEnd& end) const = 0;
+
+  /// The walk, start first; empty if there is none.
+  [[nodiscard]] std::vector<CellIndex> pathTo(CellIndex cell) const;
 
   /// How far costTo() may be above the true least cost; 0 for exact arithmetic.
   [[nodiscard]] virtual double costError() const = 0;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <functional>
 #include <queue>
 #include <tuple>
@@ -23,7 +22,15 @@ class ReferenceTree final : public LeastRiskTree {
     const Components::Id best = bestComponent(cell);
     return best == Components::kNone ? kInfiniteCost : label(best).cost;
   }
-  [[nodiscard]] std::vector<CellIndex> pathTo(CellIndex cell) const override;
+  [[nodiscard]] std::optional<WalkEnd> lastOf(CellIndex cell) const override {
+    const Components::Id best = bestComponent(cell);
+    if (best == Components::kNone) return std::nullopt;
+    return WalkEnd{cell, components_.direction(best)};
+  }
+  [[nodiscard]] WalkEnd before(const WalkEnd& end) const override {
+    return {lattice_.neighbour(end.cell, opposite(end.incoming)),
+            label(components_.id(end.cell, end.incoming)).before};
+  }
   [[nodiscard]] double costError() const override { return 0.0; }
   [[nodiscard]] std::size_t expanded() const override { return expanded_; }
   [[nodiscard]] bool complete() const override { return complete_; }
@@ -110,18 +117,6 @@ Components::Id ReferenceTree::bestComponent(CellIndex cell) const {
   if (cell == components_.cell(components_.startId())) consider(components_.startId());
   for (const Direction d : lattice_.directions()) consider(components_.id(cell, d));
   return best;
-}
-
-std::vector<CellIndex> ReferenceTree::pathTo(CellIndex cell) const {
-  std::vector<CellIndex> path;
-  for (Components::Id id = bestComponent(cell); id != Components::kNone;) {
-    path.push_back(components_.cell(id));
-    if (id == components_.startId()) break;
-    const CellIndex u = lattice_.neighbour(path.back(), opposite(components_.direction(id)));
-    id = components_.id(u, label(id).before);
-  }
-  std::reverse(path.begin(), path.end());
-  return path;
 }
 
 }  // namespace

@@ -89,4 +89,21 @@ void visitGridPoints(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const E
   }
 }
 
+/// The same for the part of the triangle c, c + p, c + q between the parallels to its side opposite
+/// of c at the parts low < high of the way there. May visit a point twice.
+template <typename Visit>
+void visitGridPointsBetween(const Eigen::Vector2d& c, const Eigen::Vector2d& p,
+                            const Eigen::Vector2d& q, double low, double high, int size_u,
+                            int size_v, double margin, Visit&& visit) {
+  const Eigen::Vector2d far_p = c + high * p;
+  const Eigen::Vector2d far_q = c + high * q;
+  if (low <= 0.0) {
+    visitGridPoints(c, far_p, far_q, size_u, size_v, margin, visit);
+    return;
+  }
+  const Eigen::Vector2d near_p = c + low * p;
+  visitGridPoints(near_p, far_p, far_q, size_u, size_v, margin, visit);
+  visitGridPoints(near_p, Eigen::Vector2d(c + low * q), far_q, size_u, size_v, margin, visit);
+}
+
 }  // namespace tautline::planning

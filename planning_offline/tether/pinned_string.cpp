@@ -65,10 +65,10 @@ std::optional<StackId> PinnedString::drag(StackId stack, const Eigen::Vector3d& 
 }
 
 bool PinnedString::free(StackId stack, const Eigen::Vector3d& end) {
-  if (sweep_.solid().penetrated(anchors_[stack], end)) return false;
+  if (!sweep_.freeAfterDrag(anchors_[stack], end)) return false;
   for (StackId s = stack; s != kStraight; s = tree().pop(s)) {
-    if (s < checked_.size() && checked_[s] != 0) return true;
-    if (sweep_.solid().penetrated(anchors_[tree().pop(s)], anchors_[s])) return false;
+    if (s < checked_.size() && checked_[s] != 0) break;
+    if (!sweep_.free(anchors_[tree().pop(s)], anchors_[s])) return false;
   }
   if (stack >= checked_.size()) checked_.resize(stack + std::size_t{1}, 0);
   checked_[stack] = 1;

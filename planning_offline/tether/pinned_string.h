@@ -47,7 +47,7 @@ class PinnedString final : public TreeString {
                                             const Eigen::Vector3d& q);
   [[nodiscard]] StackId push(StackId stack, const Bend& bend);
 
-  /// True if no part of the string penetrates an obstacle.
+  /// True if no part of the string penetrates an obstacle, its end having been dragged to `end`.
   [[nodiscard]] bool free(StackId stack, const Eigen::Vector3d& end);
 
   Eigen::Vector3d origin_;

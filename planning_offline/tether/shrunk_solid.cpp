@@ -22,6 +22,8 @@ double scattered(std::uint64_t n) {
   return static_cast<double>((n ^ n >> 31U) >> 11U) * 0x1p-53;
 }
 
+Eigen::Vector3i cellOf(const Eigen::Vector3d& p) { return p.array().floor().cast<int>(); }
+
 std::vector<double> movedPlanes(int axis, int cells) {
   std::vector<double> planes;
   for (int k = 0; k <= cells; ++k) {
@@ -32,6 +34,53 @@ std::vector<double> movedPlanes(int axis, int cells) {
     }
   }
   return planes;
+}
+
+/// Marks all cells from lo to hi, both included, that are on the grid.
+void mark(const GridShape& shape, const Eigen::Vector3i& lo, const Eigen::Vector3i& hi,
+          std::vector<std::uint8_t>& marked) {
+  const Eigen::Vector3i first = lo.cwiseMax(0);
+  const Eigen::Vector3i last =
+      hi.cwiseMin(Eigen::Vector3i(shape.nx, shape.ny, shape.nz) - Eigen::Vector3i::Ones());
+  for (int z = first.z(); z <= last.z(); ++z) {
+    for (int y = first.y(); y <= last.y(); ++y) {
+      for (int x = first.x(); x <= last.x(); ++x) {
+        marked[static_cast<std::size_t>(shape.index({x, y, z}))] = 1;
+      }
+    }
+  }
+}
+
+std::vector<std::uint8_t> touchingEdges(const GridShape& shape,
+                                        const std::array<ConvexEdges, 3>& all) {
+  std::vector<std::uint8_t> marked(shape.size(), 0);
+  for (const ConvexEdges& edges : all) {
+    Eigen::Vector3i at;
+    int& w = at[edges.axis()];
+    int& v = at[axisV(edges.axis())];
+    int& u = at[axisU(edges.axis())];
+    for (w = 0; w < edges.sizeW(); ++w) {
+      for (v = 0; v <= edges.sizeV(); ++v) {
+        for (u = 0; u <= edges.sizeU(); ++u) {
+          if ((edges.quadrants(u, v, w) | edges.joints(u, v, w)) == 0) continue;
+          Eigen::Vector3i end = at;
+          ++end[edges.axis()];
+          mark(shape, at - Eigen::Vector3i::Ones(), end, marked);
+        }
+      }
+    }
+  }
+  return marked;
+}
+
+std::vector<std::uint8_t> touchingOccupied(const VoxelMap& map) {
+  std::vector<std::uint8_t> marked(map.shape.size(), 0);
+  for (std::size_t i = 0; i < map.cells.size(); ++i) {
+    if (map.cells[i] != CellState::kOccupied) continue;
+    const Eigen::Vector3i cell = map.shape.cell(static_cast<CellIndex>(i));
+    mark(map.shape, cell - Eigen::Vector3i::Ones(), cell + Eigen::Vector3i::Ones(), marked);
+  }
+  return marked;
 }
 
 /// True if a plane through the end of an edge goes through the inside of the cell there, which lies
@@ -53,7 +102,8 @@ ShrunkSolid::ShrunkSolid(const VoxelMap& map)
       cells_(map.cells),
       edges_{ConvexEdges(map, 0), ConvexEdges(map, 1), ConvexEdges(map, 2)},
       planes_{movedPlanes(0, map.shape.nx), movedPlanes(1, map.shape.ny),
-              movedPlanes(2, map.shape.nz)} {}
+              movedPlanes(2, map.shape.nz)},
+      field_(map.shape, touchingEdges(map.shape, edges_), touchingOccupied(map)) {}
 
 bool ShrunkSolid::solid(const ConvexEdge& edge, int w) const noexcept {
   Eigen::Vector3i cell;
@@ -148,7 +198,7 @@ std::vector<ShrunkSolid::EdgeEnd> ShrunkSolid::edgesFrom(const Eigen::Vector3d& 
 }
 
 double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
-  const Eigen::Vector3i cell = p.array().floor().cast<int>();
+  const Eigen::Vector3i cell = cellOf(p);
   if (!occupied(cell)) return 0.0;
   double least = 1.0;
   for (int n = 0; n < 27; ++n) {
@@ -164,7 +214,17 @@ double ShrunkSolid::depth(const Eigen::Vector3d& p) const noexcept {
   return least;
 }
 
-bool ShrunkSolid::penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept {
+bool ShrunkSolid::penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                             const Stretches& near) const noexcept {
+  for (const auto& [low, high] : near) {
+    const Eigen::Vector3d from = a + low * (b - a);
+    if (penetratedAnywhere(from, high < 1.0 ? Eigen::Vector3d(a + high * (b - a)) : b)) return true;
+  }
+  return false;
+}
+
+bool ShrunkSolid::penetratedAnywhere(const Eigen::Vector3d& a,
+                                     const Eigen::Vector3d& b) const noexcept {
   constexpr double kShortest = 1e-4;
   const Eigen::Vector3d d = b - a;
   const double length = d.norm();
@@ -192,11 +252,12 @@ bool ShrunkSolid::penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
       if (crossing <= part) crossing = (plane + std::copysign(1.0, d[axis]) - a[axis]) / d[axis];
       next = std::min(next, crossing);
     }
-    if ((next - part) * length > kShortest) {
+    const auto at = [&](double place) -> Eigen::Vector3d {
+      return a + (part + place * (next - part)) * d;
+    };
+    if ((next - part) * length > kShortest && occupied(cellOf(at(0.5)))) {
       // At two places: a line can be deepest at either end, but not in between only.
-      for (const double place : {0.25, 0.75}) {
-        if (depth(a + (part + place * (next - part)) * d) > kDepthMax) return true;
-      }
+      if (depth(at(0.25)) > kDepthMax || depth(at(0.75)) > kDepthMax) return true;
     }
     part = next;
   }

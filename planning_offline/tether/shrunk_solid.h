@@ -18,6 +18,7 @@
 
 #include "planning_offline/map/voxel_map.h"
 #include "planning_offline/tether/convex_edges.h"
+#include "planning_offline/tether/near_field.h"
 
 namespace tautline::planning {
 
@@ -75,9 +76,14 @@ class ShrunkSolid {
   /// Those that end within 1e-7 of a point.
   [[nodiscard]] std::vector<EdgeEnd> edgesFrom(const Eigen::Vector3d& corner) const;
 
+  /// Where edges and cells are near a string.
+  [[nodiscard]] const NearField& field() const noexcept { return field_; }
+
   /// True if the straight line goes deeper than `kDepthMax` below the obstacles' true surface. What
-  /// is shorter than 1e-4 in a cell is not looked at: there the line cuts a corner.
-  [[nodiscard]] bool penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept;
+  /// is shorter than 1e-4 in a cell is not looked at: there the line cuts a corner. `near` says
+  /// where it may be near occupied cells, 0 at a and 1 at b.
+  [[nodiscard]] bool penetrated(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                const Stretches& near) const noexcept;
   static constexpr double kDepthMax = 1e-5;
 
  private:
@@ -97,6 +103,9 @@ class ShrunkSolid {
   [[nodiscard]] double layerEnd(int axis, int layer) const noexcept;  ///< Its upper end.
   [[nodiscard]] bool convexIn(const ConvexEdge& edge, int layer) const noexcept;
   [[nodiscard]] bool solidIn(const ConvexEdge& edge, int layer) const noexcept;
+  /// penetrated() for a line that is near cells all along.
+  [[nodiscard]] bool penetratedAnywhere(const Eigen::Vector3d& a,
+                                        const Eigen::Vector3d& b) const noexcept;
   /// How far a point is inside the obstacles, by the largest component of the way out; at most 1.
   [[nodiscard]] double depth(const Eigen::Vector3d& p) const noexcept;
 
@@ -104,6 +113,7 @@ class ShrunkSolid {
   std::vector<CellState> cells_;
   std::array<ConvexEdges, 3> edges_;
   std::array<std::vector<double>, 3> planes_;  ///< Two a grid plane: below, above.
+  NearField field_;
 };
 
 }  // namespace tautline::planning

@@ -329,7 +329,7 @@ bool SlidingString::straighten(std::size_t i) {
 bool SlidingString::free() const {
   for (std::size_t i = 0; i <= bends_.size(); ++i) {
     const Eigen::Vector3d& to = i < bends_.size() ? bends_[i].bend.at : end_;
-    if (sweep_.solid().penetrated(before(i), to)) return false;
+    if (!sweep_.free(before(i), to)) return false;
   }
   return true;
 }

@@ -102,13 +102,18 @@ void StringSweep::meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vec
         first = Meeting{part, reach, {solid_.pointOn(edge, place), edge, turn}};
     }
   };
-  visitGridPoints(c2, c2 + to_p, c2 + to_q, edges.sizeU(), edges.sizeV(), kMargin, consider);
+  for (const auto& [part_low, part_high] : near_.edges) {
+    visitGridPointsBetween(c2, to_p, to_q, part_low, part_high, edges.sizeU(), edges.sizeV(),
+                           kMargin, consider);
+  }
 }
 
 std::optional<StringSweep::Meeting> StringSweep::firstMeeting(const Eigen::Vector3d& c,
                                                               const Eigen::Vector3d& p,
-                                                              const Leg& leg) const {
+                                                              const Leg& leg) {
   std::optional<Meeting> first;
+  near_ = solid_.field().near(c, p, leg.target);
+  if (near_.edges.empty()) return first;
   for (int axis = 0; axis < 3; ++axis) {
     if (axis != leg.dead_axis) meetEdges(axis, c, p, leg.target, first);
   }

@@ -15,6 +15,7 @@
 
 #include "planning_offline/map/voxel_map.h"
 #include "planning_offline/tether/convex_edges.h"
+#include "planning_offline/tether/near_field.h"
 #include "planning_offline/tether/shrunk_solid.h"
 
 namespace tautline::planning {
@@ -64,6 +65,16 @@ class StringSweep {
   template <class Stack>
   [[nodiscard]] bool drag(Stack& stack, Eigen::Vector3d x, const Eigen::Vector3d& q);
 
+  /// True if the straight line does not penetrate an obstacle.
+  [[nodiscard]] bool free(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept {
+    return !solid_.penetrated(a, b, solid_.field().near(a, b, b).occupied);
+  }
+  /// The same for the free part that the last drag() left, from its anchor to its end.
+  [[nodiscard]] bool freeAfterDrag(const Eigen::Vector3d& anchor,
+                                   const Eigen::Vector3d& end) const noexcept {
+    return !solid_.penetrated(anchor, end, near_.occupied);
+  }
+
   /// By how much to pass a way's middle aside where two events on it came too close to each other
   /// to be told apart.
   static const std::array<Eigen::Vector3d, 6>& asides();
@@ -88,11 +99,13 @@ class StringSweep {
                                                      const Eigen::Vector3d& x, const Leg& leg);
   /// First edge that the string from c meets while its end goes from p along the leg.
   [[nodiscard]] std::optional<Meeting> firstMeeting(const Eigen::Vector3d& c,
-                                                    const Eigen::Vector3d& p, const Leg& leg) const;
+                                                    const Eigen::Vector3d& p, const Leg& leg);
+  /// Looks where near_ says that edges are.
   void meetEdges(int axis, const Eigen::Vector3d& c, const Eigen::Vector3d& p,
                  const Eigen::Vector3d& q, std::optional<Meeting>& first) const;
 
   ShrunkSolid solid_;
+  NearField::Near near_;   ///< Of the last sweep.
   std::vector<Leg> legs_;  ///< Ways still to go, the next one last; kept for its memory.
 };
 

@@ -16,13 +16,16 @@ fail() {
   printf '  %s\n' "$@"
 }
 
+# The lines of a file that are no progress of a busy machine.
+said() { grep -vE ', [0-9]+ s$' "$1"; }
+
 # expect CODE PATTERN COMMAND…: exit code, one line on stderr that matches, nothing on stdout.
 expect() {
   local code=$1 pattern=$2 got
   shift 2
   timeout 60 "$@" >"$work/out" 2>"$work/err"
   got=$?
-  if [[ $got == "$code" && $(wc -l <"$work/err") == 1 && ! -s $work/out ]] && grep -qE -- "$pattern" "$work/err"; then
+  if [[ $got == "$code" && $(said "$work/err" | wc -l) == 1 && ! -s $work/out ]] && grep -qE -- "$pattern" "$work/err"; then
     passed=$((passed + 1))
   else
     fail "$*" "wanted exit $code and one line like: $pattern" "got exit $got: $(cat "$work/err")"
@@ -92,7 +95,21 @@ holds "why" "abs(sum(s['share'] for s in j['shares']) - 1) < 1e-9 and j['runner_
   "$plan" why --map "$room" --goal 3.5,1.1,3.5 --json
 holds "reach" "j['free'] > j['straight'] > 0 and j['with_contacts'] == j['free'] and abs(j['straight'] / j['free'] - j['straight_fraction']) < 1e-12" \
   "$plan" reach --map "$room" --reel 0.5,0.5,0.5 --json
-holds "fields" "j['fields']['distance']['min'] > 0 and 0 < j['fields']['locale_risk']['max'] < 1" "$plan" fields --map "$room" --json
+shaft=$config/scenes/dissertation/shaft.scene.toml
+holds "the published reach" "j['free'] == 990 and j['straight'] == 590 and j['with_contacts'] == 990 and round(100 * j['straight_fraction']) == 60 \
+and j['with_contacts_fraction'] == 1.0 and not any('within' in k or 'at_most' in k for k in j)" \
+  "$plan" reach --map "$shaft" --tether-clearance 0.33 --json
+holds "reach by contacts" "j['straight'] == 840 and j['with_contacts_at_most'] == [840, 990, 990] and j['with_contacts_at_most_bound'] == [840, 990, 990] \
+and all(abs(x - 0.165) < 1e-9 for x in j['take_off_m'])" "$plan" reach --map "$shaft" --contacts-max 2 --json
+holds "reach under limits" "j['straight_within_limits'] < min(j['straight_within_length'], j['straight_within_elevation']) <= j['straight'] == 840 \
+and j['straight_within_length'] <= j['with_contacts_within_length'] <= j['with_contacts_within_length_bound'] < 990 \
+and j['with_contacts_within_limits'] < j['with_contacts_within_elevation'] < 990 and j['with_contacts'] == 990 \
+and abs(j['with_contacts_within_elevation'] / 990 - j['with_contacts_within_elevation_fraction']) < 1e-12" \
+  "$plan" reach --map "$shaft" --length-max-m 2.97 --elevation-min-deg 20 --json
+holds "fields" "j['fields']['distance']['min'] > 0 and 0 < j['fields']['locale_risk']['max'] < 1 and j['fields']['contacts']['max'] >= 1 \
+and 0 <= j['fields']['tether_length']['min'] < j['fields']['tether_length']['max'] < 10" "$plan" fields --map "$room" --json
+holds "one field of the paths" "list(j['fields']) == ['tether_length'] and 4 < j['fields']['tether_length']['max'] < 8" \
+  "$plan" fields --map "$room" --reel 3.5,0.5,3.5 --start 3.5,1.1,0.5 --field tether_length --json
 
 holds "a slice is planar" "all(abs(p[1] - j['path'][0][1]) < 1e-9 for p in j['path'])" \
   "$plan" plan --map "$room" --slice 1.1 --start 0.7,1.1,0.7 --goal 3.5,1.1,3.5 --planner tether --json
@@ -100,6 +117,13 @@ holds "a crop keeps to its box" "all(p[0] < 1.6 for p in j['path'])" \
   "$plan" plan --map "$room" --crop 0,0,0,1.6,2,4 --goal 1.1,1.1,3.5 --json --rewards <(printf '[[rewards]]\nposition_m = [1, 1, 1]\nvalue = 1\n')
 holds "a straight tether has no contacts" "all(s['contacts_m'] == [] for s in j['states'])" \
   "$plan" plan --map "$room" --straight-tether --goal 3.5,1.1,1.1 --planner tether --json
+# Behind the pillar is the short way, in front of it the one that the reel sees.
+for planner in exact additive directional lookback tether "utility two-stage" utility prm; do
+  holds "a straight tether by $planner" "j['status'] in ('optimal', 'feasible') and len(j['path']) > 9 and all(s['contacts_m'] == [] for s in j['states'])" \
+    "$plan" plan --map "$room" --straight-tether --resolution 0.4 --start 1.6,1,3.6 --goal 3.6,1,1.6 --planner "$planner" --time-limit-s 20 --json
+done
+holds "a tether with contacts goes behind" "any(len(s['contacts_m']) > 1 for s in j['states'])" \
+  "$plan" plan --map "$room" --resolution 0.4 --start 1.6,1,3.6 --goal 3.6,1,1.6 --planner directional --json
 for planner in lookback "utility two-stage" utility; do
   holds "plan by $planner" "j['status'] in ('optimal', 'feasible', 'cut') and j['reward'] == 1.0 and j['settings']['params']" \
     "$plan" plan --map "$room" --resolution 0.4 --planner "$planner" --time-limit-s 5 --json
@@ -152,6 +176,10 @@ expect 5 'reel.*too far' "$plan" reach --map "$room" --reel 100000,0,0
 expect 2 "--connectivity: is '6'; allowed: faces.edges.vertices" "$plan" plan --map "$room" --connectivity 6 --goal 3.5,1.1,3.5
 holds "moves over faces only" "all(sum(abs(a - b) > 1e-9 for a, b in zip(p, q)) == 1 for p, q in zip(j['path'], j['path'][1:]))" \
   "$plan" plan --map "$room" --connectivity faces --goal 3.5,1.1,3.5 --json
+expect 2 '--field.*nope.*tether_length, contacts, all' "$plan" fields --map "$room" --field nope
+expect 2 "--field.*'contacts' needs" "$plan" fields --map "$work/tiny.map" --field contacts
+expect 2 '--start.*not in the free space' "$plan" fields --map "$room" --start 2,1,2
+expect 2 '--height.*outside the map' "$plan" reach --map "$room" --svg "$work/no.svg" --height 7
 expect 2 '--clearance: is not a number' "$plan" fields --map "$room" --clearance nan
 expect 5 'rewards.*inside an obstacle' "$plan" plan --map "$room" --rewards <(printf '[[rewards]]\nposition_m = [2, 1, 2]\nvalue = 1\n')
 printf '1.1 1.1 1.1\n3.1 1.1 3.1\n' >"$work/path.txt"

@@ -2,6 +2,7 @@
 
 #include "planning_offline/field/reach.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -43,29 +44,43 @@ TEST(Reach, PublishedShaftRoom) {
   EXPECT_EQ(computeReach(map, free, *map.reel, {}, kQuiet).straight_count, 840U);
 }
 
-TEST(Reach, StraightIsLineOfSightWithinTheLimits) {
+TEST(Reach, StraightIsLineOfSightAndTheLimitsCountApart) {
   VoxelMap map = roomsMap({50, 12, 40}, 9);
   map.origin = Eigen::Vector3d(-2.0, 1.0, 0.5);
   const auto free = freeSpace(map, {.clearance = 0.12}, kQuiet);
   CellIndex start = 0;
   while (free[static_cast<std::size_t>(start)] == 0) ++start;
   const Eigen::Vector3d reel = map.centre(start) + Eigen::Vector3d(0.013, -0.02, 0.031);
-  const ReachOptions options{.length_max = 1.7, .elevation_min = -5.0};
+  const ReachOptions options{.length_max = 1.7, .elevation_min = 5.0};
   const ReachMap reach = computeReach(map, free, reel, options, kQuiet);
   const std::vector<std::uint8_t> occupied = obstacleCells(map, false);
   std::size_t count = 0;
+  std::size_t near = 0;
+  std::size_t high = 0;
+  std::size_t both = 0;
   for (CellIndex i = 0; i < static_cast<CellIndex>(free.size()); ++i) {
-    const Eigen::Vector3d way = map.centre(i) - reel;
-    const bool expected = free[static_cast<std::size_t>(i)] != 0 && way.norm() <= 1.7 &&
-                          way.y() >= std::sin(-5.0 * 3.14159265358979 / 180.0) * way.norm() &&
+    const bool expected = free[static_cast<std::size_t>(i)] != 0 &&
                           lineOfSight(map.shape, occupied, (reel - map.origin) / map.resolution,
                                       (map.centre(i) - map.origin) / map.resolution);
     ASSERT_EQ(reach.straight[static_cast<std::size_t>(i)] != 0, expected) << i;
-    count += expected ? 1U : 0U;
+    if (!expected) continue;
+    const Eigen::Vector3d way = map.centre(i) - reel;
+    const bool is_near = way.norm() <= 1.7;
+    const bool is_high = way.y() >= std::sin(5.0 * 3.14159265358979 / 180.0) * way.norm();
+    ++count;
+    near += is_near ? 1U : 0U;
+    high += is_high ? 1U : 0U;
+    both += is_near && is_high ? 1U : 0U;
   }
   EXPECT_EQ(reach.straight_count, count);
-  EXPECT_GT(count, 50U);
-  const ReachMap one_thread = computeReach(map, free, reel, {1.7, -5.0, 0.0, 1}, kQuiet);
+  EXPECT_EQ(reach.straight_within_length, near);
+  EXPECT_EQ(reach.straight_within_elevation, high);
+  EXPECT_EQ(reach.straight_within_limits, both);
+  EXPECT_GT(both, 50U);
+  EXPECT_LT(both, std::min(near, high));
+  EXPECT_LT(std::max(near, high), count);
+  EXPECT_EQ(reach.take_off, start);
+  const ReachMap one_thread = computeReach(map, free, reel, {1.7, 5.0, 0.0, 1}, kQuiet);
   EXPECT_EQ(one_thread.straight, reach.straight);
 }
 

@@ -76,12 +76,24 @@ std::uint32_t DirectionalSearch::stepUnits(CellIndex from, Direction d) const {
   return units_.hasAccess() ? step + units_.access(from, to) : step;
 }
 
-Direction DirectionalSearch::incomingAt(CellIndex from, Direction d, std::uint64_t label) const {
-  const std::uint64_t before = label - stepUnits(from, d);
+Direction DirectionalSearch::bestIncoming(CellIndex cell) const {
+  return cell == start_ ? kNoDirection : labelsOf(cell)->best();
+}
+
+Direction DirectionalSearch::incomingBefore(CellIndex cell, Direction d) const {
+  const CellIndex from = lattice_->neighbour(cell, opposite(d));
+  const std::uint64_t before = *label(cell, d) - stepUnits(from, d);
   if (from == start_ && before == units_.turn[kNoDirection][at(d)]) return kNoDirection;
-  for (const Direction p : lattice_->directions()) {
-    const auto at_from = this->label(from, p);
-    if (at_from && *at_from + units_.turn[at(p)][at(d)] == before) return p;
+  if (const CellLabels* labels = labelsOf(from)) {
+    const std::uint64_t base = std::uint64_t{labels->bucket} << units_.shift();
+    for (const Direction p : lattice_->directions()) {
+      const std::uint16_t offset = labels->offset[at(p)];
+      const std::uint64_t cost = base + offset;
+      if (offset != CellLabels::kNone && cost < final_below_ &&
+          cost + units_.turn[at(p)][at(d)] == before) {
+        return p;
+      }
+    }
   }
   constexpr bool kLabelHasAPredecessor = false;
   TAUTLINE_CHECK(kLabelHasAPredecessor);
@@ -89,14 +101,11 @@ Direction DirectionalSearch::incomingAt(CellIndex from, Direction d, std::uint64
 }
 
 std::vector<CellIndex> DirectionalSearch::pathTo(CellIndex cell) const {
-  if (cell == start_) return {start_};
   if (!least(cell)) return {};
   std::vector<CellIndex> path{cell};
-  std::uint64_t cost = *least(cell);
-  for (Direction d = labelsOf(cell)->best(); d != kNoDirection;) {
+  for (Direction d = bestIncoming(cell); d != kNoDirection;) {
     const CellIndex from = lattice_->neighbour(path.back(), opposite(d));
-    d = incomingAt(from, d, cost);
-    if (d != kNoDirection) cost = *label(from, d);
+    d = incomingBefore(path.back(), d);
     path.push_back(from);
   }
   std::reverse(path.begin(), path.end());

@@ -39,6 +39,14 @@ class DirectionalSearch {
   /// or too large; they are so by UnitCosts::dominated.
   [[nodiscard]] std::optional<std::uint64_t> label(CellIndex cell, Direction d) const;
 
+  /// Direction by which the walk of least() arrives; kNoDirection at the start. Only where there is
+  /// one.
+  [[nodiscard]] Direction bestIncoming(CellIndex cell) const;
+
+  /// Direction by which the walk of label(cell, d) entered the cell before, kNoDirection if that is
+  /// the start; the smallest of equals. Only for labels that a walk of least() goes through.
+  [[nodiscard]] Direction incomingBefore(CellIndex cell, Direction d) const;
+
   /// The walk of least(), start first; empty if there is none. Of equal ones the one whose last
   /// steps have the smallest directions.
   [[nodiscard]] std::vector<CellIndex> pathTo(CellIndex cell) const;
@@ -51,7 +59,6 @@ class DirectionalSearch {
  private:
   [[nodiscard]] const CellLabels* labelsOf(CellIndex cell) const noexcept;
   [[nodiscard]] std::uint32_t stepUnits(CellIndex from, Direction d) const;
-  [[nodiscard]] Direction incomingAt(CellIndex from, Direction d, std::uint64_t label) const;
 
   const Lattice* lattice_;
   UnitCosts units_;

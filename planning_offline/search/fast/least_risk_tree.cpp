@@ -20,7 +20,8 @@ std::size_t componentsOf(const Lattice& lattice) {
 class UnitTree final : public LeastRiskTree {
  public:
   UnitTree(const Lattice& lattice, const RiskModel& risk, UnitCosts units, CellIndex start)
-      : search_(lattice, std::move(units), risk.costs().locale, start),
+      : lattice_(lattice),
+        search_(lattice, std::move(units), risk.costs().locale, start),
         start_cost_(risk.startCost(start)),
         components_(static_cast<double>(componentsOf(lattice))) {}
 
@@ -31,8 +32,13 @@ class UnitTree final : public LeastRiskTree {
     if (!least) return std::numeric_limits<double>::infinity();
     return start_cost_ + static_cast<double>(*least) * search_.units().unit();
   }
-  [[nodiscard]] std::vector<CellIndex> pathTo(CellIndex cell) const override {
-    return search_.pathTo(cell);
+  [[nodiscard]] std::optional<WalkEnd> lastOf(CellIndex cell) const override {
+    if (!search_.least(cell)) return std::nullopt;
+    return WalkEnd{cell, search_.bestIncoming(cell)};
+  }
+  [[nodiscard]] WalkEnd before(const WalkEnd& end) const override {
+    return {lattice_.neighbour(end.cell, opposite(end.incoming)),
+            search_.incomingBefore(end.cell, end.incoming)};
   }
   // Units are rounded down: only the double's own rounding can be above, unless steps of no cost
   // were raised to a unit. Of those, the best walk takes each once at most.
@@ -44,6 +50,7 @@ class UnitTree final : public LeastRiskTree {
   [[nodiscard]] bool complete() const override { return search_.complete(); }
 
  private:
+  const Lattice& lattice_;
   DirectionalSearch search_;
   double start_cost_;
   double components_;

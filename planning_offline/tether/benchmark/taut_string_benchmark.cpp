@@ -10,6 +10,7 @@
 #include <benchmark/benchmark.h>
 
 #include "planning_offline/tether/convex_edges.h"
+#include "planning_offline/tether/shrunk_solid.h"
 #include "planning_offline/tether/sliding_string.h"
 #include "planning_offline/tether/taut_string.h"
 #include "planning_offline/tether/test/walks.h"
@@ -195,6 +196,46 @@ BENCHMARK(BM_SlidingStep)
     ->Args({100, 50})
     ->Iterations(20)
     ->Unit(benchmark::kMillisecond);
+
+/// The cheap test alone: strings of one step between cells anywhere on the map.
+void BM_NearField(benchmark::State& state) {
+  const int side = static_cast<int>(state.range(0));
+  walks::Random random(2);
+  const VoxelMap map =
+      walks::clutteredMap({side, side, side}, static_cast<int>(state.range(1)), random);
+  const ShrunkSolid solid(map);
+  std::uniform_real_distribution<double> anywhere(0.0, side);
+  const auto point = [&] {
+    return Eigen::Vector3d(anywhere(random), anywhere(random), anywhere(random));
+  };
+  struct Sweep {
+    Eigen::Vector3d c, p, q;
+  };
+  std::vector<Sweep> sweeps;
+  for (int n = 0; n < 1000; ++n) {
+    const Eigen::Vector3d p = point();
+    sweeps.push_back({point(), p, p + Eigen::Vector3d(1.0, 0.0, -1.0)});
+  }
+  double near = 0.0;
+  double length = 0.0;
+  for (auto _ : state) {
+    near = length = 0.0;
+    for (const Sweep& sweep : sweeps) {
+      length += (sweep.p - sweep.c).norm();
+      for (const auto& [low, high] : solid.field().near(sweep.c, sweep.p, sweep.q).edges) {
+        near += (high - low) * (sweep.p - sweep.c).norm();
+      }
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(sweeps.size()));
+  state.counters["length_cells"] = length / static_cast<double>(sweeps.size());
+  state.counters["near_share"] = near / length;
+}
+BENCHMARK(BM_NearField)
+    ->Args({40, 8})
+    ->Args({100, 50})
+    ->Args({100, 5000})
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace tautline::planning
