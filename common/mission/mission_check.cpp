@@ -137,6 +137,17 @@ class Checker {
                          : "no obstacle within " + metres(kOnSurface),
           "move it to the edge that the tether will touch");
     }
+    checkSharp(contact.p_WC, scene_->boxes);
+    checkSharp(contact.p_WC, scene_->prisms);
+  }
+
+  template <class Obstacle>
+  void checkSharp(const Eigen::Vector3d& p_WC, const std::vector<Obstacle>& obstacles) {
+    for (const Obstacle& obstacle : obstacles) {
+      if (!obstacle.sharp || std::abs(signedDistance(p_WC, obstacle)) > kOnSurface) continue;
+      add(FindingSeverity::kError, "touches the sharp obstacle '" + obstacle.name + "'",
+          "plan a way whose tether does not");
+    }
   }
 
   void checkFirst() {
@@ -222,8 +233,10 @@ class Checker {
     const Eigen::Vector3d& p = position(i - 1);
     const Eigen::Vector3d& q = position(i);
     if ((p - q).norm() < kSamePlace) {
-      add(FindingSeverity::kWarning, "same position as the waypoint before",
-          "use hold_s to stay there");
+      // Where only the contact changes the drone does not fly.
+      if (stacks_[at(i)] == stacks_[at(i - 1)])
+        add(FindingSeverity::kWarning, "same position as the waypoint before",
+            "use hold_s to stay there");
       return;
     }
     const double nearest = distanceToSegment(anchor(i), p, q);

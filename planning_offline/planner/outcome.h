@@ -21,8 +21,10 @@ struct GoalSearch {
   bool capped{false};           ///< Left out paths above options.risk_cap; others keep them.
   const char* cut{nullptr};     ///< What stopped it early; null: nothing.
   std::int64_t expanded{0};
+  BrokenLimits refused{};  ///< Limits of the tether that it met.
 };
-/// A path above options.risk_cap is none.
+/// A path above options.risk_cap is none. Without a path the text names the limits of the tether
+/// that were met, unless there is none without them either.
 [[nodiscard]] PlanResult concludeGoal(const PlanProblem& problem, const PlanOptions& options,
                                       const GoalSearch& found);
 
@@ -32,6 +34,7 @@ struct AllSearch {
   bool proven{true};  ///< The paths have the least risk.
   const char* cut{nullptr};
   std::int64_t expanded{0};
+  BrokenLimits refused{};  ///< Limits of the tether that it met.
 };
 /// Chooses the end by options.objective. Stops choosing when cancelled.
 [[nodiscard]] PlanResult concludeAll(const PlanProblem& problem, const PlanOptions& options,
