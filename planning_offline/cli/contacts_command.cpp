@@ -175,7 +175,8 @@ void writeFiles(const Arguments& arguments, const GivenPath& path, const Contact
 ExitCode run(const Arguments& arguments) {
   TerminalProgress terminal;
   const MapSpace space = loadMapSpace(arguments.map, terminal.progress());
-  PathFileOptions options{.reel = space.map->reel, .legacy = {}};
+  PathFileOptions options;
+  options.reel = space.map->reel;
   if (arguments.scale > 0.0) options.legacy.scale = arguments.scale;
   if (!arguments.axes.empty()) options.legacy.axes = parseLegacyAxes(arguments.axes);
   const GivenPath path = readPath(arguments.path, options);

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <fmt/core.h>
 
 #include "common/error.h"
@@ -25,9 +26,23 @@ void add(GivenPath& path, const Eigen::Vector3d& point, const Waypoint& orders) 
   path.orders.push_back(orders);
 }
 
-GivenPath pathOf(const Mission& mission, const Eigen::Vector3d& reel) {
+/// Whether waypoint i is there only because the contact changes on a straight way.
+bool onlyChangesContact(const MissionPlan& plan, int i) {
+  constexpr double kStraight = 1e-9;  // [m]
+  if (i == 0 || i + 1 == plan.waypoint_count) return false;
+  const Waypoint& before = plan.waypoints[static_cast<std::size_t>(i - 1)];
+  const Waypoint& here = plan.waypoints[static_cast<std::size_t>(i)];
+  const Waypoint& next = plan.waypoints[static_cast<std::size_t>(i + 1)];
+  const Eigen::Vector3d in = here.p_WD - before.p_WD;
+  const Eigen::Vector3d out = next.p_WD - here.p_WD;
+  return next.contact != here.contact && here.hold <= 0.0 && in.dot(out) > 0.0 &&
+         in.cross(out).norm() <= kStraight * (in + out).norm();
+}
+
+GivenPath pathOf(const Mission& mission, const Eigen::Vector3d& reel, bool states_only) {
   GivenPath path;
   for (int i = 0; i < mission.plan->waypoint_count; ++i) {
+    if (states_only && onlyChangesContact(*mission.plan, i)) continue;
     const Waypoint& waypoint = mission.plan->waypoints[static_cast<std::size_t>(i)];
     add(path, waypoint.p_WD + reel, waypoint);
   }
@@ -94,7 +109,7 @@ GivenPath readPath(const std::string& file, const PathFileOptions& options) {
   if (file.ends_with(".toml")) {
     refuseLegacyOptions(file, options.legacy);
     const Mission mission = readMission(file);
-    GivenPath path = pathOf(mission, mission.reel_position);
+    GivenPath path = pathOf(mission, mission.reel_position, options.states_only);
     path.reel = mission.reel_position;
     return path;
   }
@@ -112,7 +127,7 @@ GivenPath readPath(const std::string& file, const PathFileOptions& options) {
                       .remedy = "--reel x,y,z"},
                      ExitCode::kUsage);
   }
-  return pathOf(parseLegacyMission(text, file, options.legacy), *options.reel);
+  return pathOf(parseLegacyMission(text, file, options.legacy), *options.reel, options.states_only);
 }
 
 void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space,

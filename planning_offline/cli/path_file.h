@@ -28,6 +28,10 @@ struct GivenPath {
 struct PathFileOptions {
   std::optional<Eigen::Vector3d> reel;  ///< Of the map, M [m]: the origin of legacy files.
   LegacyOptions legacy;                 ///< Scale and axes of legacy files.
+  /// Leave out what a mission has only for the tether: a waypoint in the straight line between its
+  /// neighbours where the contact changes and nothing is waited for. A plan's states are the
+  /// others.
+  bool states_only{false};
 };
 
 /// Mission (`.toml`), text with x y z [m] a line in M (spaces or commas, # comments), or a legacy

@@ -56,7 +56,7 @@ ExitCode runPath(const Arguments& arguments) {
   const RiskSpace space = loadRiskSpace(arguments.risk, terminal.progress());
   const VoxelMap& map = *space.space.map;
   const std::vector<Eigen::Vector3d> path =
-      readPath(arguments.path, {.reel = map.reel, .legacy = {}}).points;
+      readPath(arguments.path, {.reel = map.reel, .legacy = {}, .states_only = true}).points;
   needFreeWay(path, space.space, arguments.path);
   const RiskReport report = space.risk->evaluate(path);
   const std::vector<RiskElement> elements = space.risk->enabled();

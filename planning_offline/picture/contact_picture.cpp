@@ -13,6 +13,8 @@ using plot::Drawing;
 using plot::Style;
 using plot::Symbol;
 
+constexpr std::size_t kPointsDrawn = 150;  // more of them would hide the line
+
 using Points = std::vector<Eigen::Vector3d>;
 
 /// One tether, reel to vehicle.
@@ -91,9 +93,10 @@ plot::Figure contactFigure(const std::string& title, const VoxelMap& map,
                               .colour = end ? Colour::kBlack : Colour::kGrey,
                               .width = 1.0});
   }
+  const bool crowded = path.size() > kPointsDrawn;
   drawing.curves.push_back({.name = "path",
                             .points = std::move(path),
-                            .style = Style::kLinePoints,
+                            .style = crowded ? Style::kLine : Style::kLinePoints,
                             .colour = Colour::kBlue,
                             .width = 2.0});
   addMarkers(drawing, reel, plan);
