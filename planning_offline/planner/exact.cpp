@@ -210,6 +210,7 @@ PlanResult bestOfAll(const PlanProblem& problem, const PlanOptions& options, con
   } else {
     result.text = std::string("stopped before there was a path: ") + cut;
   }
+  if (!result) result.text += limitsClause(problem, options, all.refused());
   return result;
 }
 

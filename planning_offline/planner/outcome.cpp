@@ -51,14 +51,6 @@ bool connected(const PlanProblem& problem, CellIndex goal) {
   return seen[static_cast<std::size_t>(goal)] != 0;
 }
 
-/// What a text about a missing path ends with: the limits of the tether, if they are why.
-std::string limitsClause(const PlanProblem& problem, const PlanOptions& options,
-                         const BrokenLimits& refused) {
-  if (!refused.any() || (options.goal && !connected(problem, *options.goal))) return {};
-  return "; limits of the tether refused the ways: " +
-         textOf(refused, problem.risk->params().tether_limits);
-}
-
 /// Limits that a path breaks which was found without regard to them.
 BrokenLimits brokenBy(const RiskReport& report, const RiskModel& risk) {
   BrokenLimits broken;
@@ -89,6 +81,13 @@ PlanResult withoutPath(const GoalSearch& found) {
 }
 
 }  // namespace
+
+std::string limitsClause(const PlanProblem& problem, const PlanOptions& options,
+                         const BrokenLimits& refused) {
+  if (!refused.any() || (options.goal && !connected(problem, *options.goal))) return {};
+  return "; limits of the tether refused the ways: " +
+         textOf(refused, problem.risk->params().tether_limits);
+}
 
 PlanResult concludeGoal(const PlanProblem& problem, const PlanOptions& options,
                         const GoalSearch& found) {

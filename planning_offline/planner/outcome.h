@@ -12,6 +12,11 @@
 
 namespace tautline::planning {
 
+/// What a text about a missing path ends with: the limits of the tether that were met, by their
+/// names in the parameters. Empty if none was, or if there is no way to the goal without them.
+[[nodiscard]] std::string limitsClause(const PlanProblem& problem, const PlanOptions& options,
+                                       const BrokenLimits& refused);
+
 /// What a search for the least risk to options.goal found.
 struct GoalSearch {
   std::vector<CellIndex> path;  ///< Empty: none.
@@ -23,8 +28,7 @@ struct GoalSearch {
   std::int64_t expanded{0};
   BrokenLimits refused{};  ///< Limits of the tether that it met.
 };
-/// A path above options.risk_cap is none. Without a path the text names the limits of the tether
-/// that were met, unless there is none without them either.
+/// A path above options.risk_cap is none. Without a path the text has the limitsClause().
 [[nodiscard]] PlanResult concludeGoal(const PlanProblem& problem, const PlanOptions& options,
                                       const GoalSearch& found);
 
