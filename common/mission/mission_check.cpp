@@ -137,6 +137,17 @@ class Checker {
                          : "no obstacle within " + metres(kOnSurface),
           "move it to the edge that the tether will touch");
     }
+    checkSharp(contact.p_WC, scene_->boxes);
+    checkSharp(contact.p_WC, scene_->prisms);
+  }
+
+  template <class Obstacle>
+  void checkSharp(const Eigen::Vector3d& p_WC, const std::vector<Obstacle>& obstacles) {
+    for (const Obstacle& obstacle : obstacles) {
+      if (!obstacle.sharp || std::abs(signedDistance(p_WC, obstacle)) > kOnSurface) continue;
+      add(FindingSeverity::kError, "touches the sharp obstacle '" + obstacle.name + "'",
+          "plan a way whose tether does not");
+    }
   }
 
   void checkFirst() {
@@ -196,6 +207,14 @@ class Checker {
     }
   }
 
+  /// The drone does not move to the waypoint and does not stay: one of several changes of anchor at
+  /// one place, which count as one.
+  [[nodiscard]] bool onlySwitches(int i) const {
+    return i > 0 && i + 1 < plan_.waypoint_count && plan_.waypoints[at(i)].hold <= 0.0 &&
+           stacks_[at(i)] != stacks_[at(i + 1)] &&
+           (position(i) - position(i - 1)).norm() < kSamePlace;
+  }
+
   /// A change of anchor happens at the waypoint before; the paid-out length must hardly change
   /// there.
   void checkSwitch(int i) {
@@ -203,11 +222,13 @@ class Checker {
     const std::vector<int>& after = stacks_[at(i)];
     if (before == after) return;
     const std::size_t popped = before.size() > after.size() ? before.size() - after.size() : 0;
-    const double jump =
-        tautLength(plan_, after, position(i - 1)) - tautLength(plan_, before, position(i - 1));
+    int flown = i - 1;
+    while (onlySwitches(flown)) --flown;
+    const double jump = tautLength(plan_, after, position(i - 1)) -
+                        tautLength(plan_, stacks_[at(flown)], position(i - 1));
     add(FindingSeverity::kInfo, (popped > 0 ? "relaxes to " : "forms ") + name(i) +
                                     ", tether length changes by " + metres(std::abs(jump)));
-    if (std::abs(jump) > limits_.switch_jump) {
+    if (std::abs(jump) > limits_.switch_jump && !onlySwitches(i)) {
       add(FindingSeverity::kWarning,
           "the tether does not lie on " + name(i) +
               " when it becomes the anchor: length jumps by " + metres(std::abs(jump)),
@@ -222,8 +243,10 @@ class Checker {
     const Eigen::Vector3d& p = position(i - 1);
     const Eigen::Vector3d& q = position(i);
     if ((p - q).norm() < kSamePlace) {
-      add(FindingSeverity::kWarning, "same position as the waypoint before",
-          "use hold_s to stay there");
+      // Where only the contact changes the drone does not fly.
+      if (stacks_[at(i)] == stacks_[at(i - 1)])
+        add(FindingSeverity::kWarning, "same position as the waypoint before",
+            "use hold_s to stay there");
       return;
     }
     const double nearest = distanceToSegment(anchor(i), p, q);
@@ -280,7 +303,7 @@ class Checker {
       return;
     }
     checkClearance(p, q);
-    checkTetherCut(i, p, q);
+    if (!onlySwitches(i)) checkTetherCut(i, p, q);
   }
 
   void checkClearance(const Eigen::Vector3d& p, const Eigen::Vector3d& q) {

@@ -133,6 +133,7 @@ void readObstacles(TomlTable& root, Scene& scene) {
     Box& box = scene.boxes.emplace_back();
     table.require("name", box.name);
     readExtent(table, box.min, box.max);
+    table.read("sharp", box.sharp);
     table.finish();
   }
   for (TomlTable& table : root.tables("prisms")) {
@@ -141,6 +142,7 @@ void readObstacles(TomlTable& root, Scene& scene) {
     table.require("footprint_m", prism.footprint, kCoordinate);
     table.require("y_min_m", prism.y_min, kCoordinate);
     table.require("y_max_m", prism.y_max, kCoordinate);
+    table.read("sharp", prism.sharp);
     table.finish();
     if (!isSimplePolygon(prism.footprint)) {
       throw table.error("footprint_m", "is not a simple polygon",

@@ -25,6 +25,7 @@ struct Box {
   std::string name;
   Eigen::Vector3d min{Eigen::Vector3d::Zero()};
   Eigen::Vector3d max{Eigen::Vector3d::Zero()};
+  bool sharp{false};  ///< The tether must not touch it; the planner plans so.
 };
 
 /// Solid upright prism over a simple polygon in the floor plane; corners are (z, x), any
@@ -34,6 +35,7 @@ struct Prism {
   std::vector<Eigen::Vector2d> footprint;
   double y_min{0.0};
   double y_max{0.0};
+  bool sharp{false};  ///< As Box::sharp.
 };
 
 /// A position worth visiting, for planning.

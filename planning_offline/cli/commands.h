@@ -14,6 +14,7 @@ void addPlanCommand(CLI::App& app, ExitCode& result);
 void addWhyCommand(CLI::App& app, ExitCode& result);
 void addCompareCommand(CLI::App& app, ExitCode& result);
 void addRiskCommand(CLI::App& app, ExitCode& result);
+void addContactsCommand(CLI::App& app, ExitCode& result);
 void addReachCommand(CLI::App& app, ExitCode& result);
 void addFieldsCommand(CLI::App& app, ExitCode& result);
 void addScenCommand(CLI::App& app, ExitCode& result);

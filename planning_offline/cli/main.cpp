@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   planning::addWhyCommand(app, result);
   planning::addCompareCommand(app, result);
   planning::addRiskCommand(app, result);
+  planning::addContactsCommand(app, result);
   planning::addReachCommand(app, result);
   planning::addFieldsCommand(app, result);
   planning::addScenCommand(app, result);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -14,6 +15,8 @@
 #include "common/toml/toml_writer.h"
 #include "planning_offline/cli/commands.h"
 #include "planning_offline/cli/explain.h"
+#include "planning_offline/cli/mission_output.h"
+#include "planning_offline/cli/path_file.h"
 #include "planning_offline/cli/plan_output.h"
 #include "planning_offline/cli/terminal_progress.h"
 #include "planning_offline/cli/workspace.h"
@@ -60,13 +63,27 @@ json explanationJson(const Explanation& e, const PlanSpace& space, const std::st
 /// Exit code of a result: a path, however it was cut, is an answer.
 ExitCode codeOf(const PlanResult& result) { return result ? ExitCode::kOk : ExitCode::kFailed; }
 
+std::vector<Waypoint> ordersOf(const RiskReport& report) {
+  std::vector<Waypoint> orders(report.states.size());
+  for (std::size_t i = 0; i < orders.size(); ++i) orders[i].risk = report.states[i].risk;
+  return orders;
+}
+
+/// What a mission needs and a plan does not: a reel, and a start that a straight tether reaches.
+void needFlyableStart(const PlanSpace& space) {
+  const VoxelMap& map = *space.risk_space.space.map;
+  needReel(map);
+  needStraightStart(map, *map.reel, map.centre(space.problem.start), {});
+}
+
 void writeFiles(const Arguments& arguments, const PlanResult& result, const PlanSpace& space) {
   const VoxelMap& map = *space.risk_space.space.map;
   const std::string title =
       fmt::format("{}, {}: risk {:.3f}", map.name, arguments.planner, result.report.risk);
   std::optional<Mission> mission;  // made first: what cannot be a mission leaves no file behind
   if (!arguments.output.empty()) {
-    mission = missionOf(result, map, fmt::format("Planned by {}", title), arguments.output);
+    mission = missionOf(contactsOf(result.report, map), ordersOf(result.report), map,
+                        fmt::format("Planned by {}", title), arguments.output);
   }
   if (!arguments.csv.empty())
     writeFileAtomically(arguments.csv, riskTableCsv(result.report, space.problem.risk->enabled()));
@@ -79,7 +96,7 @@ void writeFiles(const Arguments& arguments, const PlanResult& result, const Plan
 ExitCode runPlan(const Arguments& arguments) {
   TerminalProgress terminal;
   const PlanSpace space = loadPlanSpace(arguments.plan, terminal.progress());
-  if (!arguments.output.empty()) needReel(*space.risk_space.space.map);
+  if (!arguments.output.empty()) needFlyableStart(space);
   const PlanResult result =
       solve(arguments.planner, space.problem, space.options, terminal.progress());
   std::optional<Explanation> explanation;

@@ -6,19 +6,28 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "common/error.h"
 #include "common/toml/config_file.h"
+#include "planning_offline/cli/contact_output.h"
+#include "planning_offline/cli/json_values.h"
 
 namespace tautline::planning {
 namespace {
 
 using nlohmann::json;
 
-json toJson(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
-json numberOrNull(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 double element(const StateRisk& state, RiskElement e) {
   return state.elements[static_cast<std::size_t>(e)];
+}
+
+/// statesJson(), and per state what the tether does on the way to it.
+json plannedStatesJson(const PlanResult& result, const PlanSpace& space) {
+  json states = statesJson(result.report, space.problem.risk->enabled());
+  const VoxelMap& map = *space.risk_space.space.map;
+  if (!map.reel) return states;
+  const ContactPlan contacts = contactsOf(result.report, map);
+  for (std::size_t i = 0; i < contacts.states.size(); ++i)
+    states[i].update(tetherJson(contacts.states[i]));
+  return states;
 }
 
 }  // namespace
@@ -69,6 +78,12 @@ json statesJson(const RiskReport& report, const std::vector<RiskElement>& elemen
     out.push_back(std::move(row));
   }
   return out;
+}
+
+ContactPlan contactsOf(const RiskReport& report, const VoxelMap& map) {
+  std::vector<Eigen::Vector3d> path;
+  for (const StateRisk& state : report.states) path.push_back(state.position);
+  return planContacts(map, *map.reel, path);
 }
 
 double wayLength(const RiskReport& report) {
@@ -126,7 +141,7 @@ json resultJson(const std::string& planner, const PlanResult& result, const Plan
     out["utility"] = numberOrNull(result.utility);
     out["length_m"] = wayLength(result.report);
     for (const StateRisk& s : result.report.states) out["path"].push_back(toJson(s.position));
-    out["states"] = statesJson(result.report, space.problem.risk->enabled());
+    out["states"] = plannedStatesJson(result, space);
   }
   if (result.risk_lower_bound)
     out["bound"] = {{"risk_at_least", numberOrNull(*result.risk_lower_bound)}};
@@ -140,58 +155,6 @@ json resultJson(const std::string& planner, const PlanResult& result, const Plan
         {{"risk", point.risk}, {"reward", point.reward}, {"path", std::move(path)}});
   }
   return out;
-}
-
-void needReel(const VoxelMap& map) {
-  if (map.reel) return;
-  throw InputError({.key = "--output",
-                    .problem = "a mission needs the place of the reel, and the map has none",
-                    .remedy = "--reel x,y,z"},
-                   ExitCode::kUsage);
-}
-
-Mission missionOf(const PlanResult& result, const VoxelMap& map, const std::string& description,
-                  const std::filesystem::path& file) {
-  needReel(map);
-  Mission mission;
-  mission.name = file.stem().stem().string();
-  mission.description = description;
-  mission.reel_position = *map.reel;
-  mission.map =
-      std::filesystem::relative(map.file, std::filesystem::absolute(file).parent_path()).string();
-  mission.map_hash = hashText(map.hash);
-  MissionPlan& plan = *mission.plan;
-  const auto tooMany = [&](const char* what, int most) {
-    return InputError({.file = file.string(),
-                       .problem = fmt::format("the plan has more {} than a mission holds", what),
-                       .allowed = fmt::format("{}", most),
-                       .remedy = "plan with a larger --resolution"});
-  };
-  // A stack that grows by several contacts in one step becomes as many waypoints at the same place:
-  // a mission forms one contact a waypoint.
-  std::vector<int> stack;
-  for (const StateRisk& state : result.report.states) {
-    std::size_t kept = 0;
-    while (kept < stack.size() && kept < state.contacts.size() &&
-           anchorPosition(plan, stack[kept]) == state.contacts[kept] - *map.reel) {
-      ++kept;
-    }
-    stack.resize(kept);
-    do {
-      if (stack.size() < state.contacts.size()) {
-        if (plan.contact_count == kMaxContacts) throw tooMany("contacts", kMaxContacts);
-        MissionContact& contact = plan.contacts[static_cast<std::size_t>(plan.contact_count++)];
-        contact = {plan.contact_count, state.contacts[stack.size()] - *map.reel};
-        stack.push_back(contact.id);
-      }
-      if (plan.waypoint_count == kMaxWaypoints) throw tooMany("waypoints", kMaxWaypoints);
-      Waypoint& waypoint = plan.waypoints[static_cast<std::size_t>(plan.waypoint_count++)];
-      waypoint.p_WD = state.position - *map.reel;
-      waypoint.contact = stack.empty() ? kReelContact : stack.back();
-      waypoint.risk = state.risk;
-    } while (stack.size() < state.contacts.size());
-  }
-  return mission;
 }
 
 }  // namespace tautline::planning

@@ -1,19 +1,18 @@
 #pragma once
 
 /// @file
-/// Plans and risk tables as text, JSON, CSV and mission files. Not real-time safe: offline only.
+/// Plans and risk tables as text, JSON and CSV. Not real-time safe: offline only.
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "common/mission/mission_file.h"
 #include "planning_offline/cli/workspace.h"
 #include "planning_offline/planner/planner.h"
 #include "planning_offline/risk/risk_model.h"
 #include "planning_offline/risk/risk_report.h"
+#include "planning_offline/tether/contact_plan.h"
 
 namespace tautline::planning {
 
@@ -25,6 +24,9 @@ namespace tautline::planning {
 [[nodiscard]] nlohmann::json statesJson(const RiskReport& report,
                                         const std::vector<RiskElement>& elements);
 
+/// The states of a path with the tether of the map's reel, which must be there.
+[[nodiscard]] ContactPlan contactsOf(const RiskReport& report, const VoxelMap& map);
+
 /// Length of the way along the states [m].
 [[nodiscard]] double wayLength(const RiskReport& report);
 
@@ -34,15 +36,5 @@ namespace tautline::planning {
 /// Everything about a result. Numbers that are not finite are null.
 [[nodiscard]] nlohmann::json resultJson(const std::string& planner, const PlanResult& result,
                                         const PlanSpace& space);
-
-/// The path as a mission (docs/mission_files.md): shifted to the reel, with the tether contacts of
-/// every state and its state risk; its map is given relative to the folder of `file`. Throws
-/// InputError: no reel, or more waypoints or contacts than a mission holds.
-[[nodiscard]] Mission missionOf(const PlanResult& result, const VoxelMap& map,
-                                const std::string& description, const std::filesystem::path& file);
-
-/// Throws InputError (usage) if the map has no reel: asked before anything is planned for a
-/// mission.
-void needReel(const VoxelMap& map);
 
 }  // namespace tautline::planning

@@ -2,7 +2,6 @@
 /// `tautline-plan risk`: the risk of a table of elements, or of a path on a map.
 
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,15 +10,13 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "common/mission/mission_file.h"
 #include "common/plot/figure.h"
-#include "common/toml/toml_file.h"
 #include "common/toml/toml_writer.h"
 #include "planning_offline/cli/commands.h"
+#include "planning_offline/cli/path_file.h"
 #include "planning_offline/cli/plan_output.h"
 #include "planning_offline/cli/terminal_progress.h"
 #include "planning_offline/cli/workspace.h"
-#include "planning_offline/field/line_of_sight.h"
 #include "planning_offline/picture/plan_picture.h"
 #include "planning_offline/risk/table_file.h"
 
@@ -54,76 +51,12 @@ ExitCode runTable(const Arguments& arguments) {
   return ExitCode::kOk;
 }
 
-/// Points of a mission file (shifted from W to M), or of a text file with x y z a line (spaces or
-/// commas, # comments).
-std::vector<Eigen::Vector3d> readPath(const std::string& file) {
-  std::vector<Eigen::Vector3d> points;
-  if (file.ends_with(".toml")) {
-    const Mission mission = readMission(file);
-    // A waypoint where the last one is only switches the contact: no state of its own.
-    for (int i = 0; i < mission.plan->waypoint_count; ++i) {
-      const Eigen::Vector3d p =
-          mission.plan->waypoints[static_cast<std::size_t>(i)].p_WD + mission.reel_position;
-      if (points.empty() || p != points.back()) points.push_back(p);
-    }
-    return points;
-  }
-  std::istringstream text(readTextFile(file));
-  std::string line;
-  for (int number = 1; std::getline(text, line); ++number) {
-    line = line.substr(0, line.find('#'));
-    for (char& c : line) c = c == ',' || c == '\r' ? ' ' : c;
-    std::istringstream fields(line);
-    Eigen::Vector3d p;
-    fields >> std::ws;
-    if (fields.eof()) continue;
-    if (!(fields >> p.x() >> p.y() >> p.z()) || !p.allFinite() || !(fields >> std::ws).eof()) {
-      throw InputError({.file = file,
-                        .line = number,
-                        .problem = fmt::format("is '{}'", line),
-                        .allowed = "x y z in metres"});
-    }
-    points.push_back(p);
-  }
-  if (points.empty())
-    throw InputError(
-        {.file = file, .problem = "has no point", .allowed = "x y z in metres, one point a line"});
-  return points;
-}
-
-/// Throws InputError for the first point or way between two that is not in free space.
-void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space,
-                 const std::string& file) {
-  const VoxelMap& map = *space.map;
-  std::vector<std::uint8_t> blocked;
-  for (const std::uint8_t free : space.lattice->freeCells()) blocked.push_back(free != 0 ? 0 : 1);
-  const auto cells = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
-    return (p - map.origin) / map.resolution;
-  };
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const CellIndex cell = map.indexAt(path[i]);
-    if (cell == kNoCell || !space.lattice->free(cell)) {
-      throw InputError({.file = file,
-                        .key = fmt::format("point {}", i),
-                        .problem = fmt::format(
-                            "{} is {} the map {}", pointText(path[i]),
-                            cell == kNoCell ? "outside" : "not in the free space of", map.name)});
-    }
-    if (i > 0 && !lineOfSight(map.shape, blocked, cells(path[i - 1]), cells(path[i]))) {
-      throw InputError(
-          {.file = file,
-           .key = fmt::format("points {} to {}", i - 1, i),
-           .problem = fmt::format("the way from {} to {} leaves the free space of the map {}",
-                                  pointText(path[i - 1]), pointText(path[i]), map.name)});
-    }
-  }
-}
-
 ExitCode runPath(const Arguments& arguments) {
   TerminalProgress terminal;
   const RiskSpace space = loadRiskSpace(arguments.risk, terminal.progress());
   const VoxelMap& map = *space.space.map;
-  const std::vector<Eigen::Vector3d> path = readPath(arguments.path);
+  const std::vector<Eigen::Vector3d> path =
+      readPath(arguments.path, {.reel = map.reel, .legacy = {}, .states_only = true}).points;
   needFreeWay(path, space.space, arguments.path);
   const RiskReport report = space.risk->evaluate(path);
   const std::vector<RiskElement> elements = space.risk->enabled();
@@ -174,7 +107,7 @@ void addRiskCommand(CLI::App& app, ExitCode& result) {
                    "Table of that file, e.g. red_path; default: its top level")
       ->needs(table);
   verb->add_option("--path", arguments->path,
-                   "Mission, or text with x y z [m] a line, frame of the map")
+                   "Mission, text with x y z [m] a line in the frame of the map, or legacy path")
       ->type_name("FILE")
       ->needs(map)
       ->excludes(table);

@@ -1,6 +1,5 @@
 #include "planning_offline/cli/workspace.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -16,18 +15,10 @@
 #include "common/toml/toml_file.h"
 #include "planning_offline/field/free_space.h"
 #include "planning_offline/field/reach.h"
+#include "planning_offline/map/raster.h"
 
 namespace tautline::planning {
 namespace {
-
-InputError usage(const char* option, std::string problem, std::string allowed = {},
-                 std::string remedy = {}) {
-  return InputError({.key = option,
-                     .problem = std::move(problem),
-                     .allowed = std::move(allowed),
-                     .remedy = std::move(remedy)},
-                    ExitCode::kUsage);
-}
 
 std::vector<double> parseNumbers(const std::string& text, const char* option, std::size_t count,
                                  const char* allowed) {
@@ -45,6 +36,33 @@ std::vector<double> parseNumbers(const std::string& text, const char* option, st
   }
   if (at != end || out.size() != count) throw usage(option, fmt::format("is '{}'", text), allowed);
   return out;
+}
+
+Bounds parseBox(const std::string& text, const char* option) {
+  const auto n = parseNumbers(text, option, 6, "x0,y0,z0,x1,y1,z1 in metres");
+  const Bounds box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  if (!(box.min.array() < box.max.array()).all()) {
+    throw usage(option, fmt::format("is '{}'", text),
+                "lower corner below upper corner in x, y and z");
+  }
+  return box;
+}
+
+/// A box without an obstacle in it would protect nothing: most likely a slip.
+void forbidContacts(const std::vector<std::string>& boxes, VoxelMap& map) {
+  for (const std::string& text : boxes) {
+    const CellRange range = cellsMeeting(map, parseBox(text, "--no-contact"));
+    bool any = false;
+    forEachCell(map.shape, range, [&](CellIndex i) {
+      any = any || map.cells[static_cast<std::size_t>(i)] == CellState::kOccupied;
+    });
+    if (!any) {
+      throw usage("--no-contact",
+                  fmt::format("'{}' has no obstacle of the map {} in it", text, map.name),
+                  "a box with obstacle cells, in the frame of the map", "see docs/maps.md");
+    }
+    forbidContact(map, range);
+  }
 }
 
 /// The cell of a point that the vehicle is to be in; explains why it cannot.
@@ -118,26 +136,6 @@ std::vector<double> rewardPerCell(const std::vector<Reward>& rewards, const Voxe
   return out;
 }
 
-/// An option whose value is one of `names`; its default is the value that is there.
-template <class Enum, std::size_t N>
-void addChoice(CLI::App& verb, const char* option, Enum& value,
-               const std::array<EnumName<Enum>, N>& names, const char* help) {
-  std::string allowed;
-  for (const auto& entry : names)
-    allowed += fmt::format("{}{}", allowed.empty() ? "" : "|", entry.name);
-  const auto set = [&value, &names, option, allowed](const std::string& text) {
-    for (const auto& entry : names) {
-      if (text != entry.name) continue;
-      value = entry.value;
-      return;
-    }
-    throw usage(option, fmt::format("is '{}'", text), allowed);
-  };
-  verb.add_option_function<std::string>(option, set, help)
-      ->type_name(allowed)
-      ->default_str(nameOf(value, names));
-}
-
 /// Half-computed maps are worth nothing: ends the program instead.
 void stopIfCancelled(const Progress& progress) {
   if (!progress.cancelled()) return;
@@ -169,6 +167,14 @@ void keepStraightTether(MapSpace& space, const PlanArguments& arguments, CellInd
 
 }  // namespace
 
+InputError usage(const char* option, std::string problem, std::string allowed, std::string remedy) {
+  return InputError({.key = option,
+                     .problem = std::move(problem),
+                     .allowed = std::move(allowed),
+                     .remedy = std::move(remedy)},
+                    ExitCode::kUsage);
+}
+
 std::string pointText(const Eigen::Vector3d& p) {
   return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
 }
@@ -192,6 +198,13 @@ void MapArguments::addTo(CLI::App& verb) {
   addChoice(verb, "--connectivity", connectivity, kConnectivityNames,
             "Moves over faces (6; 4 in the plane), edges (18; 8) or vertices (26; 8)");
   verb.add_option("--reel", reel, "Reel outlet x,y,z [m]; default: the scene's own");
+  verb.add_option(
+          "--no-contact", no_contact,
+          "The tether must not touch obstacle cells in this box: x0,y0,z0,x1,y1,z1 [m]; may "
+          "be repeated")
+      ->type_name("BOX")
+      ->expected(1)
+      ->take_all();
   verb.add_option("--memory-mb", memory_mb, "Largest map [MB]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -207,20 +220,14 @@ MapSpace loadMapSpace(const MapArguments& arguments, const Progress& progress) {
   }
   LoadOptions options;
   if (arguments.resolution > 0.0) options.resolution = arguments.resolution;
-  if (!arguments.crop.empty()) {
-    const auto n = parseNumbers(arguments.crop, "--crop", 6, "x0,y0,z0,x1,y1,z1 in metres");
-    options.crop = Bounds{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-    if (!(options.crop->min.array() < options.crop->max.array()).all()) {
-      throw usage("--crop", fmt::format("is '{}'", arguments.crop),
-                  "lower corner below upper corner in x, y and z");
-    }
-  }
+  if (!arguments.crop.empty()) options.crop = parseBox(arguments.crop, "--crop");
   if (!arguments.slice.empty())
     options.slice = parseNumbers(arguments.slice, "--slice", 1, "a height in metres").front();
   options.memory_limit = std::int64_t{arguments.memory_mb} << 20;
   progress.report("reading the map", -1.0);
   VoxelMap map = loadMap(arguments.map, options);
   if (!arguments.reel.empty()) map.reel = parsePoint(arguments.reel, "--reel");
+  forbidContacts(arguments.no_contact, map);
   const FreeSpaceOptions free{arguments.clearance, arguments.unknown_is_free, arguments.threads};
   std::vector<std::uint8_t> cells = freeSpace(map, free, progress);
   stopIfCancelled(progress);

@@ -4,6 +4,8 @@
 /// What all verbs of `tautline-plan` begin with: the options about map, vehicle and risk, and the
 /// map, lattice and risk model made of them. Not real-time safe: offline only.
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +14,8 @@
 #include <CLI/App.hpp>
 #include <Eigen/Core>
 
+#include "common/error.h"
+#include "common/fields.h"
 #include "planning_offline/field/map_fields.h"
 #include "planning_offline/map/lattice.h"
 #include "planning_offline/map/load_map.h"
@@ -28,6 +32,29 @@ namespace tautline::planning {
 /// "(x, y, z)" for messages.
 [[nodiscard]] std::string pointText(const Eigen::Vector3d& p);
 
+/// An error of usage about an option.
+[[nodiscard]] InputError usage(const char* option, std::string problem, std::string allowed = {},
+                               std::string remedy = {});
+
+/// An option whose value is one of `names`; its default is the value that is there.
+template <class Enum, std::size_t N>
+void addChoice(CLI::App& verb, const char* option, Enum& value,
+               const std::array<EnumName<Enum>, N>& names, const char* help) {
+  std::string allowed;
+  for (const auto& entry : names) allowed += (allowed.empty() ? "" : "|") + std::string(entry.name);
+  const auto set = [&value, &names, option, allowed](const std::string& text) {
+    for (const auto& entry : names) {
+      if (text != entry.name) continue;
+      value = entry.value;
+      return;
+    }
+    throw usage(option, "is '" + text + "'", allowed);
+  };
+  verb.add_option_function<std::string>(option, set, help)
+      ->type_name(allowed)
+      ->default_str(nameOf(value, names));
+}
+
 /// About the map and where in it the vehicle may be.
 struct MapArguments {
   std::string map;
@@ -38,6 +65,7 @@ struct MapArguments {
   bool unknown_is_free{false};
   Connectivity connectivity{Connectivity::kVertices};
   std::string reel;
+  std::vector<std::string> no_contact;
   int memory_mb{4096};
   int threads{0};
 

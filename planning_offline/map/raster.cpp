@@ -211,6 +211,14 @@ void markOutside(VoxelMap& map, const Bounds& box, CellState state) {
   }
 }
 
+void forbidContact(VoxelMap& map, const CellRange& range) {
+  forEachCell(map.shape, range, [&](CellIndex i) {
+    if (map.cells[static_cast<std::size_t>(i)] != CellState::kOccupied) return;
+    map.no_contact.resize(map.shape.size(), 0);
+    map.no_contact[static_cast<std::size_t>(i)] = 1;
+  });
+}
+
 Bounds boundsOf(const VoxelMap& map) {
   return {map.origin,
           map.origin + map.resolution * Eigen::Vector3d(map.shape.nx, map.shape.ny, map.shape.nz)};

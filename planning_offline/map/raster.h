@@ -65,6 +65,9 @@ void mark(VoxelMap& map, const Bounds& box, CellState state);
 /// mark() for all space outside the box.
 void markOutside(VoxelMap& map, const Bounds& box, CellState state);
 
+/// The occupied cells of the range become such that the tether must not touch.
+void forbidContact(VoxelMap& map, const CellRange& range);
+
 /// From the lower corner of the first cell to the upper corner of the last.
 [[nodiscard]] Bounds boundsOf(const VoxelMap& map);
 

@@ -52,15 +52,27 @@ bool meets(const Box& column, const Prism& prism) {
   return signedDistance(0.5 * (column.min + column.max), prism) < 0.0;
 }
 
+void markBox(VoxelMap& map, const Box& box) {
+  mark(map, {box.min, box.max}, CellState::kOccupied);
+  if (box.sharp) forbidContact(map, cellsMeeting(map, {box.min, box.max}));
+}
+
 void markPrism(VoxelMap& map, const Prism& prism) {
   const CellRange range = cellsMeeting(map, boundsOf(prism));
   for (int z = range.lo.z(); z <= range.hi.z(); ++z) {
     for (int x = range.lo.x(); x <= range.hi.x(); ++x) {
       if (range.lo.y() > range.hi.y() || !meets(columnAt(map, x, z, prism), prism)) continue;
-      forEachCell(map.shape, {{x, range.lo.y(), z}, {x, range.hi.y(), z}},
-                  [&](CellIndex i) { map.cells[at(i)] = CellState::kOccupied; });
+      const CellRange column{{x, range.lo.y(), z}, {x, range.hi.y(), z}};
+      forEachCell(map.shape, column, [&](CellIndex i) { map.cells[at(i)] = CellState::kOccupied; });
+      if (prism.sharp) forbidContact(map, column);
     }
   }
+}
+
+bool hasSharp(const Scene& scene) {
+  const auto sharp = [](const auto& obstacle) { return obstacle.sharp; };
+  return std::any_of(scene.boxes.begin(), scene.boxes.end(), sharp) ||
+         std::any_of(scene.prisms.begin(), scene.prisms.end(), sharp);
 }
 
 /// The row of an error is found in the file's text.
@@ -141,12 +153,13 @@ VoxelMap sceneMap(std::string_view text, const std::string& file, const LoadOpti
   VoxelMap map = makeMap({.file = file,
                           .extent = {scene.min, scene.max},
                           .resolution = options.resolution.value_or(scene.resolution),
-                          .bytes_per_cell = 1 + layerCount(scene) * sizeof(double)},
+                          .bytes_per_cell = std::size_t{1} + (hasSharp(scene) ? 1 : 0) +
+                                            layerCount(scene) * sizeof(double)},
                          options);
   map.name = scene.name;
   map.solid_border = wholeRoom(scene, map);
   markOutside(map, {scene.min, scene.max}, CellState::kOccupied);
-  for (const Box& box : scene.boxes) mark(map, {box.min, box.max}, CellState::kOccupied);
+  for (const Box& box : scene.boxes) markBox(map, box);
   for (const Prism& prism : scene.prisms) markPrism(map, prism);
   map.reel = scene.reel;
   map.start = scene.start;

@@ -72,6 +72,9 @@ struct VoxelMap {
   double resolution{1.0};                           ///< Edge of a cell [m].
   Eigen::Vector3d origin{Eigen::Vector3d::Zero()};  ///< Lower corner of cell (0, 0, 0).
   std::vector<CellState> cells;
+  /// One a cell, 1 where the cell is occupied and the tether must not touch it (sharp edges); empty
+  /// if there is no such cell.
+  std::vector<std::uint8_t> no_contact;
   bool solid_border{false};  ///< What lies outside is wall (a scene's room), not just unmapped.
   std::optional<Eigen::Vector3d> reel;
   std::optional<Eigen::Vector3d> start;

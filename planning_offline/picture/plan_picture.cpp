@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "planning_offline/picture/map_drawing.h"
+
 namespace tautline::planning {
 namespace {
 
@@ -12,74 +14,6 @@ using plot::Colour;
 using plot::Drawing;
 using plot::Style;
 using plot::Symbol;
-using plot::View;
-
-/// Cells lo … hi on each axis, both included.
-struct CellBox {
-  Eigen::Vector3i lo;
-  Eigen::Vector3i hi;
-};
-
-/// Map axes along the picture's x and y, and into it.
-struct ViewAxes {
-  int right;
-  int up;
-  int depth;
-};
-constexpr std::array<ViewAxes, 3> kViewAxes{{{0, 2, 1}, {0, 1, 2}, {2, 1, 0}}};  // top, front, side
-
-CellBox boxOf(const VoxelMap& map, const std::vector<DrawnPath>& paths) {
-  constexpr int kMargin = 2;
-  const Eigen::Vector3i last(map.shape.nx - 1, map.shape.ny - 1, map.shape.nz - 1);
-  CellBox box{last, Eigen::Vector3i::Zero()};
-  for (const DrawnPath& path : paths) {
-    for (const StateRisk& state : path.report->states) {
-      const Eigen::Vector3i cell = map.cellAt(state.position);
-      box.lo = box.lo.cwiseMin(cell);
-      box.hi = box.hi.cwiseMax(cell);
-    }
-  }
-  if ((box.lo.array() > box.hi.array()).any()) return {Eigen::Vector3i::Zero(), last};
-  box.lo = (box.lo.array() - kMargin).max(0);
-  box.hi = (box.hi.array() + kMargin).min(last.array());
-  return box;
-}
-
-/// The whole map seen along one axis, of its depth only the slab of the box.
-plot::Raster obstacleImage(const VoxelMap& map, const ViewAxes& axes, const CellBox& box) {
-  const std::array<int, 3> sizes{map.shape.nx, map.shape.ny, map.shape.nz};
-  plot::Raster image{.x_min = map.origin[axes.right],
-                     .y_min = map.origin[axes.up],
-                     .pixel_width = map.resolution,
-                     .pixel_height = map.resolution,
-                     .columns = sizes[static_cast<std::size_t>(axes.right)],
-                     .rows = sizes[static_cast<std::size_t>(axes.up)]};
-  image.pixels.reserve(static_cast<std::size_t>(image.columns) *
-                       static_cast<std::size_t>(image.rows));
-  const double depth = box.hi[axes.depth] - box.lo[axes.depth] + 1;
-  for (int row = 0; row < image.rows; ++row) {
-    for (int column = 0; column < image.columns; ++column) {
-      Eigen::Vector3i cell;
-      cell[axes.right] = column;
-      cell[axes.up] = row;
-      int occupied = 0;
-      int unknown = 0;
-      for (int d = box.lo[axes.depth]; d <= box.hi[axes.depth]; ++d) {
-        cell[axes.depth] = d;
-        const CellState state = map.cells[static_cast<std::size_t>(map.shape.index(cell))];
-        occupied += state == CellState::kOccupied ? 1 : 0;
-        unknown += state == CellState::kUnknown ? 1 : 0;
-      }
-      if (occupied > 0) {
-        image.pixels.push_back(plot::grey(0.85 - 0.5 * occupied / depth));
-      } else {
-        image.pixels.push_back(unknown == static_cast<int>(depth) ? plot::Rgb{238, 233, 245}
-                                                                  : plot::grey(1.0));
-      }
-    }
-  }
-  return image;
-}
 
 constexpr std::array<Colour, 7> kPathColours{Colour::kBlue,   Colour::kVermilion, Colour::kGreen,
                                              Colour::kPurple, Colour::kOrange,    Colour::kSky,
@@ -141,12 +75,12 @@ void addPlaces(Drawing& drawing, const VoxelMap& map, const std::vector<DrawnPat
 
 plot::Figure planFigure(const std::string& title, const VoxelMap& map,
                         const std::vector<DrawnPath>& paths, const std::vector<Reward>& rewards) {
-  Drawing drawing;
-  drawing.title = title;
+  std::vector<Eigen::Vector3d> points;
+  for (const DrawnPath& path : paths) {
+    for (const StateRisk& state : path.report->states) points.push_back(state.position);
+  }
+  Drawing drawing = mapDrawing(title, map, points);
   drawing.value_label = "state risk";
-  const CellBox box = boxOf(map, paths);
-  for (std::size_t view = 0; view < kViewAxes.size(); ++view)
-    drawing.images[view] = obstacleImage(map, kViewAxes[view], box);
   for (std::size_t i = 0; i < paths.size(); ++i) {
     addPath(drawing, paths[i], kPathColours[i % kPathColours.size()], paths.size() == 1);
   }
@@ -158,7 +92,7 @@ plot::Figure planFigure(const std::string& title, const VoxelMap& map,
     addTether(drawing, map, paths.front().report->states.back());
   }
   addPlaces(drawing, map, paths, rewards);
-  return map.shape.planar() ? viewFigure(drawing, View::kTop) : viewsFigure(drawing);
+  return mapFigure(map, drawing);
 }
 
 plot::Figure fieldFigure(const std::string& title, const std::string& label, const VoxelMap& map,

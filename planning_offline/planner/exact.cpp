@@ -64,6 +64,7 @@ class Enumeration {
   [[nodiscard]] double lowerBound() const { return lower_bound_; }
   [[nodiscard]] std::int64_t paths() const { return paths_; }
   [[nodiscard]] bool capped() const { return capped_; }
+  [[nodiscard]] const BrokenLimits& refused() const { return traverse_.refused(); }
 
  private:
   [[nodiscard]] bool hopeless(const State& state, double value, double remaining);
@@ -209,6 +210,7 @@ PlanResult bestOfAll(const PlanProblem& problem, const PlanOptions& options, con
   } else {
     result.text = std::string("stopped before there was a path: ") + cut;
   }
+  if (!result) result.text += limitsClause(problem, options, all.refused());
   return result;
 }
 
@@ -223,7 +225,8 @@ PlanResult Exact::plan(const PlanProblem& problem, const PlanOptions& options,
                                                    .lower_bound = all.lowerBound(),
                                                    .capped = all.capped(),
                                                    .cut = budget.reason(),
-                                                   .expanded = all.paths()})
+                                                   .expanded = all.paths(),
+                                                   .refused = all.refused()})
                                    : bestOfAll(problem, options, all, budget.reason());
   if (result && options.discount < 1.0) {
     result.utility = all.bestUtility();

@@ -61,7 +61,8 @@ PlanResult planLookback(const PlanProblem& problem, const PlanOptions& options, 
   if (!options.goal) {
     const PathsToAll paths{[&](CellIndex cell) { return search.costTo(cell); },
                            [&](CellIndex cell) { return search.pathTo(cell); }};
-    return concludeAll(problem, options, {paths, proven, budget.reason(), search.expanded()},
+    return concludeAll(problem, options,
+                       {paths, proven, budget.reason(), search.expanded(), traverse.refused()},
                        progress);
   }
   GoalSearch found{.path = search.pathTo(*options.goal),
@@ -75,6 +76,7 @@ PlanResult planLookback(const PlanProblem& problem, const PlanOptions& options, 
         traverse.startCost(problem.start) + to_go->cost(problem.start, kNoDirection);
   }
   if (found.cut != nullptr && found.path.empty()) takePlainPath(problem, options, found);
+  found.refused = traverse.refused();
   return concludeGoal(problem, options, found);
 }
 

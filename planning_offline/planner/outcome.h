@@ -12,6 +12,11 @@
 
 namespace tautline::planning {
 
+/// What a text about a missing path ends with: the limits of the tether that were met, by their
+/// names in the parameters. Empty if none was, or if there is no way to the goal without them.
+[[nodiscard]] std::string limitsClause(const PlanProblem& problem, const PlanOptions& options,
+                                       const BrokenLimits& refused);
+
 /// What a search for the least risk to options.goal found.
 struct GoalSearch {
   std::vector<CellIndex> path;  ///< Empty: none.
@@ -21,8 +26,9 @@ struct GoalSearch {
   bool capped{false};           ///< Left out paths above options.risk_cap; others keep them.
   const char* cut{nullptr};     ///< What stopped it early; null: nothing.
   std::int64_t expanded{0};
+  BrokenLimits refused{};  ///< Limits of the tether that it met.
 };
-/// A path above options.risk_cap is none.
+/// A path above options.risk_cap is none. Without a path the text has the limitsClause().
 [[nodiscard]] PlanResult concludeGoal(const PlanProblem& problem, const PlanOptions& options,
                                       const GoalSearch& found);
 
@@ -32,6 +38,7 @@ struct AllSearch {
   bool proven{true};  ///< The paths have the least risk.
   const char* cut{nullptr};
   std::int64_t expanded{0};
+  BrokenLimits refused{};  ///< Limits of the tether that it met.
 };
 /// Chooses the end by options.objective. Stops choosing when cancelled.
 [[nodiscard]] PlanResult concludeAll(const PlanProblem& problem, const PlanOptions& options,

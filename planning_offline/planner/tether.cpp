@@ -82,6 +82,7 @@ GoalSearch GoalPlan::run() {
   }
   found.path = std::move(best_);
   found.cut = budget_.reason();
+  found.refused = traverse_.refused();
   return found;
 }
 
@@ -132,7 +133,9 @@ PlanResult Tether::plan(const PlanProblem& problem, const PlanOptions& options,
   search.run(budget, kWhat);
   const PathsToAll paths{[&](CellIndex cell) { return search.costTo(cell); },
                          [&](CellIndex cell) { return search.pathTo(cell); }};
-  return concludeAll(problem, options, {paths, true, budget.reason(), search.expanded()}, progress);
+  return concludeAll(problem, options,
+                     {paths, true, budget.reason(), search.expanded(), traverse.refused()},
+                     progress);
 }
 
 }  // namespace

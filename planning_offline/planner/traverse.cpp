@@ -26,20 +26,25 @@ TraverseState Traverse::start(CellIndex cell) const {
   return state;
 }
 
-double Traverse::startCost(CellIndex cell) const {
+double Traverse::startCost(CellIndex cell) {
   return risk_->startCost(cell) + risk_->startShare(stateCost(start(cell), cell));
 }
 
-double Traverse::stateCost(const TraverseState& state, CellIndex cell) const {
+double Traverse::stateCost(const TraverseState& state, CellIndex cell) {
   return (tethered_ ? tetherCost(state.stack, cell) : 0.0) +
          (summing() ? risk_->accumulatorCost(state.sums, cell) : 0.0);
 }
 
-double Traverse::tetherCost(StackId stack, CellIndex cell) const {
+double Traverse::tetherCost(StackId stack, CellIndex cell) {
   const TautString& string = *risk_->string();
   const Eigen::Vector3d position = risk_->map().centre(cell);
-  if (!risk_->elevationAllowed(string.anchor(stack), position)) return kInfiniteCost;
-  return risk_->tetherCost(string.length(stack, position), string.contactCount(stack));
+  const bool allowed =
+      risk_->elevationAllowed(string.anchor(stack), position) && !string.touchesForbidden(stack);
+  const double cost =
+      allowed ? risk_->tetherCost(string.length(stack, position), string.contactCount(stack))
+              : kInfiniteCost;
+  if (!(cost < kInfiniteCost)) refused_ |= risk_->brokenLimits(stack, position);
+  return cost;
 }
 
 double Traverse::step(TraverseState& state, CellIndex u, Direction incoming, Direction d,
@@ -83,7 +88,15 @@ double Traverse::tetherBound(CellIndex v, Direction d) {
 double Traverse::leastTetherCost(CellIndex cell) {
   const Eigen::Vector3d& reel = risk_->string()->reel();
   if (!contact_bound_) contact_bound_.emplace(risk_->map(), reel);
-  return risk_->tetherCost((risk_->map().centre(cell) - reel).norm(), contact_bound_->at(cell));
+  const double straight = (risk_->map().centre(cell) - reel).norm();
+  const int contacts = contact_bound_->at(cell);
+  const double cost = risk_->tetherCost(straight, contacts);
+  if (!(cost < kInfiniteCost)) {
+    const TetherLimits& limits = risk_->params().tether_limits;
+    refused_ |=
+        {.length = !limits.allowsLength(straight), .contacts = !limits.allowsContacts(contacts)};
+  }
+  return cost;
 }
 
 }  // namespace tautline::planning

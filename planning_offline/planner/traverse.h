@@ -32,12 +32,15 @@ class Traverse {
   [[nodiscard]] TraverseState start(CellIndex cell) const;
 
   /// Cost of a path's first state, all elements.
-  [[nodiscard]] double startCost(CellIndex cell) const;
+  [[nodiscard]] double startCost(CellIndex cell);
 
   /// Cost of the step from u, entered by `incoming`, to v in direction d, all elements; `state`,
   /// u's, becomes v's. Infinite (and `state` worthless) beyond a limit.
   [[nodiscard]] double step(TraverseState& state, CellIndex u, Direction incoming, Direction d,
                             CellIndex v);
+
+  /// Limits of the tether that made a cost infinite so far.
+  [[nodiscard]] const BrokenLimits& refused() const noexcept { return refused_; }
 
   /// Lower bound of what tether elements cost for the step in direction d to v, whatever the path:
   /// the string is no shorter than a straight line and has the contacts of ContactBound.
@@ -45,8 +48,8 @@ class Traverse {
 
  private:
   /// −log(1 − r) of the traverse elements in a cell; infinite beyond a limit.
-  [[nodiscard]] double stateCost(const TraverseState& state, CellIndex cell) const;
-  [[nodiscard]] double tetherCost(StackId stack, CellIndex cell) const;
+  [[nodiscard]] double stateCost(const TraverseState& state, CellIndex cell);
+  [[nodiscard]] double tetherCost(StackId stack, CellIndex cell);
   /// No string to the cell costs less there.
   [[nodiscard]] double leastTetherCost(CellIndex cell);
   [[nodiscard]] StackId moveString(StackId stack, CellIndex u, Direction d, CellIndex v);
@@ -56,6 +59,7 @@ class Traverse {
   bool tethered_;
   bool muddy_;
   bool draining_;
+  BrokenLimits refused_;
   FlatIndex moves_;
   std::optional<ContactBound> contact_bound_;  // made when first asked for
 };

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kSameDirection = 1e-6;   // between unit vectors; far above rounding
 constexpr double kGranular = 1.0 + 1e-6;  // fields are stored as float
-constexpr double kLimitSlack = 1e-9;
 
 /// Rounded to the nearest multiple of the quantum and capped. A half goes up, also where rounding
 /// errors put it a little below: otherwise equal steps could have different risks.
@@ -91,14 +90,12 @@ double accessRisk(const RiskParams& params, double lost) {
 }
 
 double tetherLengthRisk(const RiskParams& params, double length) {
-  const double limit = params.tether_limits.length_max;
-  if (limit > 0.0 && length > limit + kLimitSlack) return 1.0;
+  if (!params.tether_limits.allowsLength(length)) return 1.0;
   return settled(params, params.tether_length.per_metre * length);
 }
 
 double contactsRisk(const RiskParams& params, int contacts) {
-  const int limit = params.tether_limits.contacts_max;
-  if (limit >= 0 && contacts > limit) return 1.0;
+  if (!params.tether_limits.allowsContacts(contacts)) return 1.0;
   return settled(params, params.contacts.each * contacts);
 }
 

@@ -131,8 +131,9 @@ class PathEvaluation {
                               ? tetherLengthRisk(params_, string->length(stack_, position))
                               : 1.0;
       of(costs, RiskElement::kTetherLength) = costOfRisk(taut);
-      of(costs, RiskElement::kContacts) =
-          costOfRisk(contactsRisk(params_, string->contactCount(stack_)));
+      of(costs, RiskElement::kContacts) = costOfRisk(
+          string->touchesForbidden(stack_) ? 1.0
+                                           : contactsRisk(params_, string->contactCount(stack_)));
     }
     return costs;
   }

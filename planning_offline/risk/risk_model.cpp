@@ -185,7 +185,8 @@ bool RiskModel::hasTether() const noexcept {
   const TetherLimits& limits = params_.tether_limits;
   return string_ != nullptr &&
          (isOn(params_, RiskElement::kTetherLength) || isOn(params_, RiskElement::kContacts) ||
-          limits.length_max > 0.0 || limits.contacts_max >= 0 || limits.elevation_min > -90.0);
+          limits.length_max > 0.0 || limits.contacts_max >= 0 || limits.elevation_min > -90.0 ||
+          !map_->no_contact.empty());
 }
 
 bool RiskModel::hasAccumulators() const noexcept {
@@ -231,6 +232,14 @@ bool RiskModel::elevationAllowed(const Eigen::Vector3d& anchor,
   const double least = params_.tether_limits.elevation_min;
   return least <= -90.0 || position == anchor ||
          elevationOf(anchor, position) >= least * std::numbers::pi / 180.0;
+}
+
+BrokenLimits RiskModel::brokenLimits(StackId stack, const Eigen::Vector3d& position) const {
+  const TetherLimits& limits = params_.tether_limits;
+  return {.length = !limits.allowsLength(string_->length(stack, position)),
+          .contacts = !limits.allowsContacts(string_->contactCount(stack)),
+          .elevation = !elevationAllowed(string_->anchor(stack), position),
+          .no_contact = string_->touchesForbidden(stack)};
 }
 
 Accumulators RiskModel::advance(const Accumulators& before, CellIndex u, CellIndex v,

@@ -46,6 +46,23 @@ struct CostField {
   double start_factor{1.0};  ///< Of locale[start] in a path's cost: 1 per state, 0 in rate mode.
 };
 
+/// Which hard limits of the tether are broken.
+struct BrokenLimits {
+  bool length{false};
+  bool contacts{false};
+  bool elevation{false};
+  bool no_contact{false};  ///< A contact on a cell of VoxelMap::no_contact.
+
+  [[nodiscard]] bool any() const noexcept { return length || contacts || elevation || no_contact; }
+  BrokenLimits& operator|=(const BrokenLimits& other) noexcept {
+    length |= other.length;
+    contacts |= other.contacts;
+    elevation |= other.elevation;
+    no_contact |= other.no_contact;
+    return *this;
+  }
+};
+
 /// Which fields the elements that are on need, up to the values where their risk ends. Unknown
 /// space and threads are left to the caller.
 [[nodiscard]] FieldRequest neededFields(const RiskParams& params, const VoxelMap& map);
@@ -88,8 +105,9 @@ class RiskModel {
   /// locale; in rate mode 0. Infinite if the state is forbidden.
   [[nodiscard]] double startCost(CellIndex start) const noexcept;
 
-  /// −log(1 − r) of tether length and contacts in a state; infinite beyond a tether limit
-  /// (elevation is asked separately). What a path pays for it: overStep(), startShare().
+  /// −log(1 − r) of tether length and contacts in a state; infinite beyond their limits (elevation
+  /// and forbidden contacts are asked separately). What a path pays for it: overStep(),
+  /// startShare().
   [[nodiscard]] double tetherCost(double length, int contacts) const noexcept;
 
   /// What a step of `step` metres costs between states of these costs (locale, tether,
@@ -105,6 +123,9 @@ class RiskModel {
   /// anchor itself it is not.
   [[nodiscard]] bool elevationAllowed(const Eigen::Vector3d& anchor,
                                       const Eigen::Vector3d& position) const noexcept;
+
+  /// The limits that the state is beyond: each is an infinite cost. There must be a string.
+  [[nodiscard]] BrokenLimits brokenLimits(StackId stack, const Eigen::Vector3d& position) const;
 
   /// Accumulators after the step from u to v of `step` metres.
   [[nodiscard]] Accumulators advance(const Accumulators& before, CellIndex u, CellIndex v,
@@ -123,7 +144,7 @@ class RiskModel {
   /// cell that holds the point; a cell forbids only inside itself), and integrated by the trapezoid
   /// in pieces of at most a cell along each axis. Both are what the step costs say for steps on the
   /// lattice. A path beyond a tether limit has risk 1 in the column of the tether length (also for
-  /// the elevation) or the contacts.
+  /// the elevation) or the contacts (also for forbidden ones).
   [[nodiscard]] RiskReport evaluate(std::span<const Eigen::Vector3d> points) const;
   [[nodiscard]] RiskReport evaluate(std::span<const CellIndex> cells) const;
 

@@ -223,11 +223,22 @@ struct BatteryParams {
 };
 
 /// Hard gates of the tether. The planners that know the tether never go beyond them; a path that
-/// does has risk 1.
+/// does has risk 1. The map has one more: cells that the tether must not touch
+/// (VoxelMap::no_contact).
 struct TetherLimits {
   double length_max{0.0};
   int contacts_max{-1};
   double elevation_min{-90.0};
+
+  /// Whether so much taut tether [m] is within the limit, up to rounding.
+  [[nodiscard]] bool allowsLength(double length) const noexcept {
+    constexpr double kSlack = 1e-9;
+    return length_max <= 0.0 || length <= length_max + kSlack;
+  }
+  [[nodiscard]] bool allowsContacts(int contacts) const noexcept {
+    return contacts_max < 0 || contacts <= contacts_max;
+  }
+
   template <class Visitor>
   void fields(Visitor& v) {
     v.field("length_max_m", length_max, Range{0.0, 1000.0}, "tether on the reel; 0 = no limit");

@@ -1,49 +1,38 @@
 #include "planning_offline/tether/compare_contacts.h"
 
-#include <cstddef>
-#include <memory>
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "planning_offline/tether/taut_string.h"
-
 namespace tautline::planning {
-namespace {
-
-/// Of the line from the reel over the contacts to the end.
-double lengthOver(const Eigen::Vector3d& reel, const std::vector<Eigen::Vector3d>& contacts,
-                  const Eigen::Vector3d& end) {
-  double length = 0.0;
-  Eigen::Vector3d anchor = reel;
-  for (const Eigen::Vector3d& contact : contacts) {
-    length += (contact - anchor).norm();
-    anchor = contact;
-  }
-  return length + (end - anchor).norm();
-}
-
-}  // namespace
 
 ContactComparison compareContacts(const VoxelMap& map, const Eigen::Vector3d& reel,
                                   std::span<const Eigen::Vector3d> path,
                                   const PublishedOptions& options) {
-  std::vector<PublishedState> published = publishedContacts(map, reel, path, options);
-  const std::unique_ptr<TautString> string = makeTautString(map, reel);
-  ContactComparison comparison;
-  comparison.rows.reserve(path.size());
-  StackId stack = kStraight;
-  Eigen::Vector3d from = string->reel();
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    stack = string->move(stack, from, path[i]);
-    from = path[i];
-    const double published_length = lengthOver(string->reel(), published[i].contacts, path[i]);
-    comparison.rows.push_back({.waypoint = path[i],
-                               .published = std::move(published[i]),
-                               .published_length = published_length,
-                               .exact = string->contacts(stack),
-                               .exact_length = string->length(stack, path[i])});
-  }
-  comparison.unresolved_moves = string->unresolvedMoves();
+  ContactPlan published = planContacts(
+      map, reel, path, {.algorithm = ContactAlgorithm::kAsPublished, .published = options});
+  ContactPlan exact = planContacts(map, reel, path, {.algorithm = ContactAlgorithm::kExact});
+  ContactComparison comparison{.unresolved_moves = exact.unresolved_moves};
+  for (std::size_t i = 0; i < path.size(); ++i)
+    comparison.rows.push_back({std::move(published.states[i]), std::move(exact.states[i])});
   return comparison;
+}
+
+std::ptrdiff_t countRefused(const ContactComparison& comparison) {
+  return std::count_if(comparison.rows.begin(), comparison.rows.end(),
+                       [](const ContactRow& row) { return row.published.relaxation_refused; });
+}
+
+std::ptrdiff_t countPierced(const ContactComparison& comparison) {
+  return std::count_if(comparison.rows.begin(), comparison.rows.end(),
+                       [](const ContactRow& row) { return row.published.pierces; });
+}
+
+double largestDifference(const ContactComparison& comparison) {
+  double largest = 0.0;
+  for (const ContactRow& row : comparison.rows)
+    largest = std::max(largest, std::abs(row.published.length - row.exact.length));
+  return largest;
 }
 
 }  // namespace tautline::planning

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "common/error.h"
 
@@ -17,6 +18,11 @@ double distanceToSegment(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
 
 ContactTree::ContactTree(const Eigen::Vector3d& reel, double grazing) : grazing_(grazing) {
   nodes_.emplace_back().point = reel;
+}
+
+void ContactTree::forbid(NoContactCells cells) {
+  TAUTLINE_CHECK(nodes_.size() == 1);
+  no_contact_ = std::move(cells);
 }
 
 std::size_t ContactTree::ChildHash::operator()(const Child& child) const noexcept {
@@ -47,6 +53,7 @@ StackId ContactTree::push(StackId stack, const ContactKey& key, const Eigen::Vec
   nodes_.push_back({.parent = stack,
                     .listed = listed,
                     .count = node(listed).count + 1,
+                    .forbidden = node(listed).forbidden || no_contact_.touchedAt(point),
                     .key = key,
                     .point = point,
                     .static_length = below.static_length + (point - below.point).norm()});

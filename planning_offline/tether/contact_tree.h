@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "planning_offline/tether/no_contact.h"
 #include "planning_offline/tether/taut_string.h"
 
 namespace tautline::planning {
@@ -34,6 +35,9 @@ class ContactTree {
   /// as straight: it stays on the stack, but is neither counted nor listed.
   ContactTree(const Eigen::Vector3d& reel, double grazing);
 
+  /// Cells that no contact may touch; there must be no stack yet.
+  void forbid(NoContactCells cells);
+
   /// The stack with one more contact, at `point` in M [m].
   [[nodiscard]] StackId push(StackId stack, const ContactKey& key, const Eigen::Vector3d& point);
 
@@ -48,12 +52,15 @@ class ContactTree {
   [[nodiscard]] int count(StackId stack) const { return node(stack).count; }
   /// Those that count, from the reel to the vehicle.
   [[nodiscard]] std::vector<Eigen::Vector3d> contacts(StackId stack) const;
+  /// True if one of contacts() touches a forbidden cell.
+  [[nodiscard]] bool forbidden(StackId stack) const { return node(stack).forbidden; }
 
  private:
   struct Node {
     StackId parent{kStraight};
     StackId listed{kStraight};  ///< Nearest stack below whose last contact counts under this one.
     int count{0};
+    bool forbidden{false};  ///< One of those that count touches a forbidden cell.
     ContactKey key;
     Eigen::Vector3d point;
     double static_length{0.0};
@@ -70,6 +77,7 @@ class ContactTree {
   [[nodiscard]] const Node& node(StackId stack) const;
 
   double grazing_;
+  NoContactCells no_contact_;
   std::vector<Node> nodes_;
   std::unordered_map<Child, StackId, ChildHash> children_;
 };

@@ -6,8 +6,14 @@
 namespace tautline::planning {
 
 std::unique_ptr<TautString> makeTautString(const VoxelMap& map, const Eigen::Vector3d& reel) {
-  if (map.shape.planar()) return std::make_unique<PlanarString>(map, reel);
-  return std::make_unique<PinnedString>(map, reel);
+  std::unique_ptr<TreeString> string;
+  if (map.shape.planar()) {
+    string = std::make_unique<PlanarString>(map, reel);
+  } else {
+    string = std::make_unique<PinnedString>(map, reel);
+  }
+  string->forbid(NoContactCells(map));
+  return string;
 }
 
 }  // namespace tautline::planning

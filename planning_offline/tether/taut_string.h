@@ -45,6 +45,10 @@ class TautString {
   /// Contact points from the reel to the vehicle.
   [[nodiscard]] virtual std::vector<Eigen::Vector3d> contacts(StackId stack) const = 0;
 
+  /// True if a contact of the stack touches a cell that the tether must not touch
+  /// (VoxelMap::no_contact): such a stack is beyond a hard limit.
+  [[nodiscard]] virtual bool touchesForbidden(StackId stack) const = 0;
+
   /// Moves so far after which no string outside all obstacles was found (docs/taut_string.md): zero
   /// in the plane, and in space as long as no move goes through an obstacle.
   [[nodiscard]] virtual std::int64_t unresolvedMoves() const noexcept { return 0; }

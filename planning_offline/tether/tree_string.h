@@ -4,6 +4,7 @@
 /// What the strings have in common: their stacks are nodes of one tree. Not real-time safe: offline
 /// only.
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,10 @@ class TreeString : public TautString {
   [[nodiscard]] std::vector<Eigen::Vector3d> contacts(StackId stack) const final {
     return tree_.contacts(stack);
   }
+  [[nodiscard]] bool touchesForbidden(StackId stack) const final { return tree_.forbidden(stack); }
+
+  /// Cells that the tether must not touch: said before the first move.
+  void forbid(NoContactCells cells) { tree_.forbid(std::move(cells)); }
 
  protected:
   TreeString(const Eigen::Vector3d& reel, double grazing) : reel_(reel), tree_(reel, grazing) {}

@@ -168,6 +168,37 @@ TEST(MissionCheck, ContactMustLieOnAnObstacle) {
               HasSubstr("error contacts[0]: 0.20 m inside an obstacle"));
 }
 
+TEST(MissionCheck, SeveralChangesOfAnchorAtOnePlaceCountAsOne) {
+  const Scene scene = pillarScene();
+  // At the place in line the first contact gives way to another on the same edge: for no time the
+  // reel is the anchor, from where the tether would cut the pillar after the jump.
+  const std::string contacts =
+      "contacts = [{id = 1, position_m = [1, 1, 2.5]}, {id = 2, position_m = [1, 1.01, 2.5]}]\n";
+  const std::string text = check(missionOf({{0.4, 1, 2},
+                                            {0.4, 1, 3.2},
+                                            {1.358, 1.358, 3.394},
+                                            {2, 1.5, 3.2, 1},
+                                            {2, 1.5, 3.2},
+                                            {2.2, 1.6, 3.2, 2}},
+                                           contacts),
+                                 &scene);
+  EXPECT_EQ(text,
+            "info waypoints[3]: forms contact 1, tether length changes by 0.00 m\n"
+            "info waypoints[4]: relaxes to the reel, tether length changes by 0.13 m\n"
+            "info waypoints[5]: forms contact 2, tether length changes by 0.00 m\n");
+}
+
+TEST(MissionCheck, AContactOnASharpObstacleIsAnError) {
+  Scene scene = pillarScene();
+  const Mission mission =
+      missionOf({{0.4, 1, 2}, {0.4, 1, 3.2}, {1.358, 1.358, 3.394}, {2, 1.5, 3.2, 1}},
+                "contacts = [{id = 1, position_m = [1, 1, 2.5]}]\n");
+  EXPECT_TRUE(isFlyable(checkMission(mission, {}, &scene)));
+  scene.boxes[0].sharp = true;
+  EXPECT_THAT(check(mission, &scene),
+              HasSubstr("error contacts[0]: touches the sharp obstacle 'pillar'"));
+}
+
 TEST(MissionCheck, SceneOfAnotherPlaceIsAnError) {
   const Scene scene = parseScene(
       "version = 1\nname = 'other'\nmin_m = [0, 0, 0]\nmax_m = [8, 3, 8]\nreel_m = [1, 0.5, 2]\n",

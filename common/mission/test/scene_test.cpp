@@ -26,7 +26,8 @@ TEST(Scene, ReadsEverything) {
       parseScene(kRoom +
                      "floor_m = 0.125\nresolution_m = 0.2\nstart_m = [1, 0.25, 3]\n"
                      "[[boxes]]\nname = 'b'\nmin_m = [2, 0, 2]\nmax_m = [3, 1, 3]\n"
-                     "[[prisms]]\nname = 'p'\nfootprint_m = [[4, 4], [5, 4], [4, 5]]\ny_min_m = 0\n"
+                     "sharp = true\n[[prisms]]\nname = 'p'\nfootprint_m = [[4, 4], [5, 4], [4, "
+                     "5]]\ny_min_m = 0\n"
                      "y_max_m = 2\n[[rewards]]\nposition_m = [5, 1, 1]\nvalue = 0.9\n"
                      "[[layers]]\nelement = 'surface'\nmin_m = [0, 0, 0]\nmax_m = [9, 1, 3]\n"
                      "value = 0.25\n",
@@ -40,6 +41,8 @@ TEST(Scene, ReadsEverything) {
   EXPECT_EQ(scene.boxes[0].max, Eigen::Vector3d(3, 1, 3));
   ASSERT_EQ(scene.prisms.size(), 1U);
   EXPECT_EQ(scene.prisms[0].footprint[1], Eigen::Vector2d(5, 4));
+  EXPECT_TRUE(scene.boxes[0].sharp);
+  EXPECT_FALSE(scene.prisms[0].sharp);
   ASSERT_EQ(scene.rewards.size(), 1U);
   EXPECT_EQ(scene.rewards[0].value, 0.9);
   ASSERT_EQ(scene.layers.size(), 1U);

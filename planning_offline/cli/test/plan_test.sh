@@ -153,6 +153,82 @@ print(1 - math.prod(1 - float(row["state_risk"]) for row in csv.DictReader(open(
 EOF
 )) < 1e-6" "$plan" risk --map "$room" --path "$work/p.mission.toml" --json
 
+holds "what a plan tells of the tether is what contacts tells of its mission" "j['longest_tether_m'] > 0 and j['contacts_formed'] > 0 \
+and all(s['tether_length_m'] <= j['longest_tether_m'] for s in j['states']) \
+and sum(e['kind'] == 'push' for s in j['states'] for e in s['events']) == j['contacts_formed']" \
+  "$plan" contacts --map "$room" --path "$work/p.mission.toml" --json -o "$work/again.mission.toml"
+if python3 - "$work/p.mission.toml" "$work/again.mission.toml" >"$work/out" 2>&1 <<'EOF'
+import re, sys
+number = r"-?[0-9]+\.[0-9]+(?:e-?[0-9]+)?"
+a, b = (re.sub(r"^(name|description).*\n", "", open(f).read(), flags=re.M) for f in sys.argv[1:])
+assert re.sub(number, "#", a) == re.sub(number, "#", b), "other rows"
+assert all(abs(float(x) - float(y)) < 1e-9 for x, y in zip(re.findall(number, a), re.findall(number, b))), "other numbers"
+EOF
+then
+  passed=$((passed + 1))
+else
+  fail "contacts of a written mission writes the same mission" "$(cat "$work/out")"
+fi
+# Every change of anchor of a written mission is in line: `forms` and `relaxes` come with no jump, nothing is repeated in vain.
+"$bin/tautline" mission check "$work/p.mission.toml" >"$work/out" 2>&1
+if grep -q 'forms contact 1, tether length changes by 0.00 m' "$work/out" && ! grep -qE 'does not lie on|same position|at once|starts with' "$work/out"; then
+  passed=$((passed + 1))
+else
+  fail "a plan's mission changes anchors in line" "$(grep -vE 'comes within|sags' "$work/out")"
+fi
+holds "plan tells events" "any(e['kind'] == 'push' for s in j['states'] for e in s['events']) \
+and all(s['tether_length_interval_m'] is None or s['tether_length_interval_m'][0] <= s['tether_length_m'] + 1e-9 for s in j['states'])" \
+  "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --planner tether --json
+
+# contacts: published missions, points, legacy paths.
+for mission in one_contact two_contacts; do
+  holds "contacts of $mission" "j['algorithm'] == 'exact' and j['frame'] == 'M' and j['unresolved_moves'] == 0 \
+and j['contacts_formed'] == j['contacts_released'] == (1 if '$mission' == 'one_contact' else 2) and j['states'][-1]['contacts_m'] == [] \
+and max(len(s['contacts_m']) for s in j['states']) == j['contacts_formed']" \
+    "$plan" contacts --map "$config/scenes/$mission.scene.toml" --path "$config/missions/$mission.mission.toml" --json \
+    --svg "$work/c.svg" --csv "$work/c.csv" -o "$work/c.mission.toml"
+  if "$bin/tautline" mission check "$work/c.mission.toml" >"$work/out" && ! grep -q '^warning' "$work/out" && grep -q '</svg>' "$work/c.svg" \
+    && [[ $(wc -l <"$work/c.csv") -gt 5 && $(head -n 1 "$work/c.csv") == waypoint,x_m* ]]; then
+    passed=$((passed + 1))
+  else
+    fail "the mission of contacts is flyable" "$(cat "$work/out")"
+  fi
+done
+printf '0.9 1.3 2.9\n1.5, 1.3, 3.3 # round the pillar\n3.3 1.3 3.3\n' >"$work/round.txt"
+# Behind the pillar the tether leaves the line reel - corner (1.6, 2.4): in line at x = 0.5 + 1.1 · 2.8 / 1.9.
+holds "a contact forms in line with reel and corner" "len(j['states']) == 3 and [e['kind'] for s in j['states'] for e in s['events']] == ['push'] \
+and abs(j['states'][2]['events'][0]['vehicle_m'][0] - (0.5 + 1.1 * 2.8 / 1.9)) < 1e-4 and abs(j['states'][2]['contacts_m'][0][0] - 1.6) < 1e-9" \
+  "$plan" contacts --map "$room" --path "$work/round.txt" --json -o "$work/round.mission.toml"
+holds "an event within a leg becomes a waypoint" "len(j['states']) == 4 and len(j['states'][3]['contacts_m']) == 1 \
+and [e['vehicle_m'] for s in j['states'] for e in s['events']] == [j['states'][2]['position_m']]" \
+  "$plan" contacts --map "$room" --path "$work/round.mission.toml" --json
+printf '0.4 0.8 2.4 0 0 0 0 0 0\n1 0.8 2.8 2 1 2 0 0 0\n2.8 0.8 2.8 0 0 0 0 0 0' >"$work/legacy.txt"
+holds "a legacy path is relative to the reel" "abs(j['states'][0]['position_m'][2] - 2.9) < 1e-12 and j['contacts_formed'] == 1" \
+  "$plan" contacts --map "$room" --path "$work/legacy.txt" --json -o "$work/legacy.mission.toml"
+grep -q 'look_at_m = \[2.0, 1.0, 2.0\]' "$work/legacy.mission.toml" || fail "a legacy path keeps what it looks at" "$(cat "$work/legacy.mission.toml")"
+printf '8 -14 24 0.01 0.01 0.01\n' >"$work/voxels.txt"
+holds "scale and axes of a legacy path" "all(abs(a - b) < 1e-9 for a, b in zip(j['states'][0]['position_m'], [0.9, 1.9, 2.9]))" \
+  "$plan" contacts --map "$room" --path "$work/voxels.txt" --scale 0.1 --axes x-yz --json --reel 0.1,0.5,0.5
+holds "risk reads legacy paths too" "len(j['states']) == 3 and 0 < j['risk'] < 1" "$plan" risk --map "$room" --path "$work/legacy.txt" --json
+
+# Hard limits of the tether.
+sed 's/name = "pillar"/name = "pillar"\nsharp = true/' "$room" >"$work/sharp.scene.toml"
+expect 3 'round.txt: waypoint 2: .* m of tether at .*; allowed: 3.5 m.*--length-max-m' "$plan" contacts --map "$room" --path "$work/round.txt" --length-max-m 3.5
+expect 3 'round.txt: on the way to waypoint 2: 1 contacts.*; allowed: 0;.*--contacts-max' "$plan" contacts --map "$room" --path "$work/round.txt" --contacts-max 0
+expect 3 'round.txt: on the way to waypoint 2: the tether touches a forbidden surface at \(1.6,.*other side' "$plan" contacts --map "$work/sharp.scene.toml" \
+  --path "$work/round.txt" -o "$work/no.mission.toml" --svg "$work/no.svg"
+expect 3 'forbidden surface' "$plan" contacts --map "$room" --no-contact 1.5,0,2,1.8,2,2.5 --path "$work/round.txt"
+[[ -e $work/no.svg || -e $work/no.mission.toml ]] && fail "a refused path wrote files" "$(ls "$work"/no.*)"
+holds "marks elsewhere do not matter" "j['contacts_formed'] == 1" \
+  "$plan" contacts --map "$room" --no-contact 2.2,0,1.5,2.5,2,2.5 --no-contact 1.6,0,1.6,2,2,2 --path "$work/round.txt" --json
+sed '/\[\[boxes\]\]/,/^$/d; s/^\[\[rewards\]\]/[[prisms]]\nname = "pillar"\nfootprint_m = [[1.6, 1.6], [1.6, 2.4], [2.4, 2.4], [2.4, 1.6]]\ny_min_m = 0.0\ny_max_m = 2.0\nsharp = true\n\n&/' \
+  "$room" >"$work/prism.scene.toml"
+expect 3 'forbidden surface' "$plan" contacts --map "$work/prism.scene.toml" --path "$work/round.txt"
+holds "a plan keeps off sharp edges" "all(s['contacts_m'] == [] for s in j['states'])" \
+  "$plan" plan --map "$work/sharp.scene.toml" --goal 3.1,1.1,1.1 --planner tether --json
+printf '[tether_limits]\nlength_max_m = 3.0\n' >"$work/short.toml"
+printf '[tether_limits]\ncontacts_max = 0\n' >"$work/straight.toml"
+
 # Ctrl-C keeps the best so far.
 "$plan" plan --map "$room" --planner exact --time-limit-s 100 --json >"$work/out" 2>"$work/err" &
 pid=$!
@@ -184,6 +260,7 @@ expect 2 '--clearance: is not a number' "$plan" fields --map "$room" --clearance
 expect 5 'rewards.*inside an obstacle' "$plan" plan --map "$room" --rewards <(printf '[[rewards]]\nposition_m = [2, 1, 2]\nvalue = 1\n')
 printf '1.1 1.1 1.1\n3.1 1.1 3.1\n' >"$work/path.txt"
 expect 5 'path.txt: points 0 to 1.*leaves the free space' "$plan" risk --map "$room" --path "$work/path.txt"
+expect 5 'path.txt: points 0 to 1.*leaves the free space' "$plan" contacts --map "$room" --path "$work/path.txt"
 expect 2 '--start.*outside the map' "$plan" plan --map "$room" --start 9,9,9 --goal 3.5,1.1,3.5
 expect 2 '--start.*inside an obstacle' "$plan" plan --map "$room" --start 2,1,2 --goal 3.5,1.1,3.5
 expect 2 '--goal.*inside an obstacle' "$plan" plan --map "$room" --goal 2,1,2
@@ -192,6 +269,32 @@ expect 2 "--start: is '1,2'; allowed: x,y,z" "$plan" plan --map "$room" --start 
 expect 2 '--goal.*no rewards' "$plan" plan --map "$config/scenes/open.scene.toml"
 expect 2 'planner: there is no planner "nosuch".*directional' "$plan" plan --map "$room" --planner nosuch
 expect 5 'nowhere.bt' "$plan" plan --map nowhere.bt --start 1,1,1 --goal 2,2,2
+expect 5 'reel.*inside an obstacle' "$plan" contacts --map "$room" --reel 2,1,2 --path "$work/round.txt"
+printf '1 1 1\n9 1 1\n' >"$work/off.txt"
+expect 5 'off.txt: point 1: .9, 1, 1. is outside the map' "$plan" contacts --map "$room" --path "$work/off.txt"
+expect 2 "--algorithm: is 'guess'; allowed: exact.as-published" "$plan" contacts --map "$room" --path "$work/round.txt" --algorithm guess
+printf '# nothing\n' >"$work/empty.txt"
+expect 5 'empty.txt: has no point' "$plan" contacts --map "$room" --path "$work/empty.txt"
+expect 5 'nowhere.txt' "$plan" contacts --map "$room" --path nowhere.txt
+printf '1 1 1\n1 1\n' >"$work/cut.txt"
+expect 5 'cut.txt:2: is' "$plan" contacts --map "$room" --path "$work/cut.txt"
+printf '1 1 1 0 0 0\n1 1 1 0 0\n' >"$work/cut.txt"
+expect 5 'cut.txt:2: has 5 numbers' "$plan" contacts --map "$room" --path "$work/cut.txt"
+printf 'version = 1\nname = ' >"$work/cut.mission.toml"
+expect 5 'cut.mission.toml:2' "$plan" contacts --map "$room" --path "$work/cut.mission.toml"
+expect 2 'round.txt: --scale: is for files of 6 or 9 numbers' "$plan" contacts --map "$room" --path "$work/round.txt" --scale 2
+expect 2 "--axes: is 'xyy'" "$plan" contacts --map "$room" --path "$work/legacy.txt" --axes xyy
+expect 2 'legacy.txt: has 9 numbers a line.*--reel' "$plan" contacts --map "$work/tiny.map" --path "$work/legacy.txt"
+expect 2 '--reel: is missing' "$plan" contacts --map "$work/tiny.map" --path "$work/round.txt"
+expect 5 'round.mission.toml: reel_position_m: is .0.5, 0.5, 0.5., and the reel of the map' "$plan" contacts --map "$room" --reel 1,1,1 --path "$work/round.mission.toml"
+printf '3.3 1.3 3.3\n3.3 1.3 3.1\n' >"$work/behind.txt"
+expect 5 'behind.txt: first waypoint: .*an obstacle is between' "$plan" contacts --map "$room" --path "$work/behind.txt"
+expect 2 "--no-contact: is '1,2'; allowed: x0,y0,z0" "$plan" contacts --map "$room" --path "$work/round.txt" --no-contact 1,2
+expect 2 "--no-contact: '0,0,0,1,1,1' has no obstacle" "$plan" contacts --map "$room" --path "$work/round.txt" --no-contact 0,0,0,1,1,1
+sed 's/sharp = true/sharp = 1/' "$work/sharp.scene.toml" >"$work/wrong.scene.toml"
+expect 5 'wrong.scene.toml:[0-9]+: boxes.0..sharp' "$plan" contacts --map "$work/wrong.scene.toml" --path "$work/round.txt"
+expect 5 'nowhere/x.mission.toml' "$plan" contacts --map "$room" --path "$work/round.txt" -o "$work/nowhere/x.mission.toml"
+expect 5 'first waypoint: .*an obstacle is between' "$plan" plan --map "$room" --start 3.3,1.3,3.3 --goal 3.5,1.1,1.1 -o "$work/no.mission.toml"
 printf 'not a map at all\n' >"$work/bad.bt"
 expect 5 'bad.bt' "$plan" reach --map "$work/bad.bt" --reel 0,0,0
 printf 'version = 1\nname = "x"\n' >"$work/short.scene.toml"
@@ -213,6 +316,16 @@ for planner in additive directional tether utility prm exact; do
   holds "unreachable goal, $planner" "j['status'] == 'unreachable' and j['path'] == [] and j['risk'] is None" \
     "$plan" plan --map "$work/wall.scene.toml" --goal 3.5,1.1,3.5 --planner "$planner" --json -o "$work/none.mission.toml" --time-limit-s 5
 done
+for planner in directional tether exact; do
+  holds "text names the tether's length, $planner" "not j['path'] and 'length_max_m = 3' in j['text']" \
+    "$plan" plan --map "$room" --resolution 0.4 --params "$work/short.toml" --goal 3.5,1.1,3.5 --planner "$planner" --json --time-limit-s 2
+  holds "text names the contacts, $planner" "not j['path'] and 'contacts_max = 0' in j['text']" \
+    "$plan" plan --map "$room" --resolution 0.4 --params "$work/straight.toml" --goal 3,1.1,3 --planner "$planner" --json --time-limit-s 2
+  holds "text names the forbidden surfaces, $planner" "not j['path'] and 'forbidden surfaces' in j['text']" \
+    "$plan" plan --map "$work/sharp.scene.toml" --resolution 0.4 --goal 3,1.1,3 --planner "$planner" --json --time-limit-s 2
+done
+holds "no limit is blamed for a wall" "not j['path'] and 'limits' not in j['text']" \
+  "$plan" plan --map "$work/wall.scene.toml" --params "$work/short.toml" --goal 3.5,1.1,3.5 --planner tether --json
 [[ -e $work/none.mission.toml ]] && fail "a plan that failed wrote a file" "$work/none.mission.toml"
 
 echo "$passed passed, $failed failed"

@@ -49,6 +49,31 @@ TEST(SceneMap, ABoxTakesTheCellsWhoseInteriorItMeets) {
             "......\n..#...\n......\n......\n");  // smaller than a cell
 }
 
+/// '!' for cells that the tether must not touch.
+std::string marks(const VoxelMap& map) {
+  std::string text = picture(map);
+  std::size_t cell = 0;
+  for (char& c : text) {
+    if (c != '\n' && map.no_contact.at(cell++) != 0) c = '!';
+  }
+  return text;
+}
+
+TEST(SceneMap, SharpObstaclesAreMarkedAtEveryResolutionAndInEveryPart) {
+  const MapFolder folder;
+  const std::string prism =
+      "[[prisms]]\nname = 'p'\nfootprint_m = [[1, 2], [1.5, 2], [1.5, 3], [1, 3]]\n"
+      "y_min_m = 0\ny_max_m = 1\nsharp = true\n";
+  const std::string text = kFlat + box("[0.5, 0, 0.5]", "[2, 0.5, 1]") +
+                           box("[1, 0, 0.5]", "[1.5, 0.5, 1]") + "sharp = true\n" + prism;
+  EXPECT_EQ(marks(folder.load("s.toml", text)), "......\n.#!#..\n....!!\n......\n");
+  const VoxelMap fine = folder.load("s.toml", text, {.resolution = 0.25});
+  EXPECT_EQ(std::count(fine.no_contact.begin(), fine.no_contact.end(), 1), 8 + 16);
+  EXPECT_EQ(marks(folder.load("s.toml", text, {.crop = Bounds{{1.5, 0, 0}, {3, 1, 2}}})),
+            "...\n#..\n.!!\n...\n");
+  EXPECT_TRUE(folder.load("s.toml", kFlat + box("[1, 0, 0.5]", "[2, 0.5, 1]")).no_contact.empty());
+}
+
 TEST(SceneMap, DecimalFacesAreOnTheFacesOfDecimalCells) {
   // 3 · 0.1 is not 0.3 in binary: without care one of these boxes would take a cell more.
   const std::string room =

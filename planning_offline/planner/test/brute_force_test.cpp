@@ -22,15 +22,24 @@ using testing::WorldKind;
 
 constexpr double kTolerance = 1e-10;
 
+/// Which traverse elements and limits the maps have.
+struct Traversed {
+  bool tether{false};
+  bool mud{false};
+  bool battery{false};
+  bool sharp{false};
+};
+
 /// Calls f(world, oracle, truth, goal) for the goals of `seeds` maps of each kind.
 template <class F>
-int forGoals(bool tether, bool mud, bool battery, std::uint32_t seeds, F f) {
+int forGoals(const Traversed& with, std::uint32_t seeds, F f) {
   int maps = 0;
   for (int k = 0; k < kKinds; ++k) {
     WorldKind kind = kindNumber(k);
-    kind.tether = tether;
-    kind.mud = mud;
-    kind.battery = battery;
+    kind.tether = with.tether;
+    kind.mud = with.mud;
+    kind.battery = with.battery;
+    kind.sharp = with.sharp;
     for (std::uint32_t seed = 0; seed < seeds; ++seed) {
       const SmallWorld world = randomWorld(kind, 1000U * static_cast<std::uint32_t>(k) + seed);
       const Truth truth = truthOf(world);
@@ -101,34 +110,46 @@ void compareExact(const SmallWorld& world, Oracle& oracle, const Truth& truth, C
 }
 
 TEST(BruteForce, LocaleAndActionElementsHaveAllPlannersOptimal) {
-  const int maps =
-      forGoals(false, false, false, 12,
-               [](const SmallWorld& world, Oracle& oracle, const Truth& truth, CellIndex goal) {
-                 compareExact(world, oracle, truth, goal);
-                 const PlanResult tether = planTo(*makeTether(), world, goal);
-                 for (const auto& planner : {makeDirectional(), makeLookback()}) {
-                   const PlanResult result = planTo(*planner, world, goal);
-                   EXPECT_EQ(result.status, tether.status);
-                   ASSERT_NEAR(result.report.cost, tether.report.cost, kTolerance);
-                   if (!result) continue;
-                   ASSERT_NO_FATAL_FAILURE(expectSound(result, world, oracle, goal));
-                 }
-               });
+  const int maps = forGoals(
+      {}, 12, [](const SmallWorld& world, Oracle& oracle, const Truth& truth, CellIndex goal) {
+        compareExact(world, oracle, truth, goal);
+        const PlanResult tether = planTo(*makeTether(), world, goal);
+        for (const auto& planner : {makeDirectional(), makeLookback()}) {
+          const PlanResult result = planTo(*planner, world, goal);
+          EXPECT_EQ(result.status, tether.status);
+          ASSERT_NEAR(result.report.cost, tether.report.cost, kTolerance);
+          if (!result) continue;
+          ASSERT_NO_FATAL_FAILURE(expectSound(result, world, oracle, goal));
+        }
+      });
   EXPECT_GT(maps, 400);
 }
 
-TEST(BruteForce, TheTetherIsExact) {
-  EXPECT_GT(forGoals(true, false, false, 12, compareExact), 400);
+TEST(BruteForce, TheTetherIsExact) { EXPECT_GT(forGoals({.tether = true}, 12, compareExact), 400); }
+
+/// The marks must make a difference, or the maps would tell nothing.
+TEST(BruteForce, ForbiddenContactsAreExact) {
+  int forbidden = 0;
+  const int maps =
+      forGoals({.tether = true, .sharp = true}, 12,
+               [&](const SmallWorld& world, Oracle& oracle, const Truth& truth, CellIndex goal) {
+                 compareExact(world, oracle, truth, goal);
+                 if (!std::isinf(at(truth.simple, goal))) return;
+                 const SmallWorld blunt = testing::withoutMarks(world);
+                 forbidden += planTo(*makeExact(), blunt, goal) ? 1 : 0;
+               });
+  EXPECT_GT(maps, 400);
+  EXPECT_GT(forbidden, 20);
 }
 
-TEST(BruteForce, MudIsExact) { EXPECT_GT(forGoals(false, true, false, 12, compareExact), 400); }
+TEST(BruteForce, MudIsExact) { EXPECT_GT(forGoals({.mud = true}, 12, compareExact), 400); }
 
 TEST(BruteForce, TheBatteryIsExact) {
-  EXPECT_GT(forGoals(false, false, true, 12, compareExact), 400);
+  EXPECT_GT(forGoals({.battery = true}, 12, compareExact), 400);
 }
 
 TEST(BruteForce, AllTraverseElementsAtOnceAreExact) {
-  EXPECT_GT(forGoals(true, true, true, 8, compareExact), 250);
+  EXPECT_GT(forGoals({.tether = true, .mud = true, .battery = true}, 8, compareExact), 250);
 }
 
 struct Comparison {

@@ -61,6 +61,20 @@ inline PlanResult planTo(const Planner& planner, const SmallWorld& world, CellIn
   return planner.plan(problemOf(world), options, Progress());
 }
 
+/// The same world, whose obstacles the tether may all touch.
+inline SmallWorld withoutMarks(const SmallWorld& world) {
+  SmallWorld blunt;
+  blunt.map = std::make_shared<VoxelMap>(*world.map);
+  blunt.map->no_contact.clear();
+  blunt.fields = world.fields;
+  blunt.params = world.params;
+  blunt.tethered = world.tethered;
+  blunt.connectivity = world.connectivity;
+  blunt.start = world.start;
+  blunt.build();
+  return blunt;
+}
+
 /// Each connectivity, turn law and mode; `index` numbers them all.
 inline WorldKind kindNumber(int index) {
   constexpr std::array kConnectivity{Connectivity::kFaces, Connectivity::kEdges,

@@ -33,6 +33,9 @@ class RewardProblem {
   /// Cells that some path within the risk cap may visit, ascending.
   [[nodiscard]] const std::vector<CellIndex>& reachable() const noexcept { return reachable_; }
 
+  /// Limits of the tether that were met so far.
+  [[nodiscard]] const BrokenLimits& refused() const noexcept { return traverse_.refused(); }
+
   [[nodiscard]] bool mayEndAt(CellIndex cell) const noexcept { return !goal_ || *goal_ == cell; }
   [[nodiscard]] bool withinCap(const PathPrefix& path) const noexcept {
     return std::isfinite(path.so_far.cost) && path.so_far.cost <= bound_.costCap();

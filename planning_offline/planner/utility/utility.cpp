@@ -11,6 +11,7 @@
 #include "planning_offline/planner/budget.h"
 #include "planning_offline/planner/choose_goal.h"
 #include "planning_offline/planner/makers.h"
+#include "planning_offline/planner/outcome.h"
 #include "planning_offline/planner/utility/beam_search.h"
 #include "planning_offline/planner/utility/candidates.h"
 #include "planning_offline/planner/utility/leg_chain.h"
@@ -164,11 +165,12 @@ PlanResult UtilityRun::conclude() const {
 }
 
 std::string UtilityRun::text(const PlanResult& result) const {
-  if (result.status == PlanStatus::kUnreachable) {
-    return options_.goal ? "no simple path to the goal within the risk cap"
-                         : "no path, nor staying, is within the risk cap";
+  if (!result) {
+    const std::string none = result.status == PlanStatus::kNone ? "stopped before there was a path"
+                             : options_.goal ? "no simple path to the goal within the risk cap"
+                                             : "no path, nor staying, is within the risk cap";
+    return none + limitsClause(problem_, options_, rewards_.refused());
   }
-  if (result.status == PlanStatus::kNone) return "stopped before there was a path";
   std::string text = "no simple path has more utility";
   if (!proven_) {
     std::array<char, 120> bounds{};

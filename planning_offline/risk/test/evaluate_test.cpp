@@ -147,6 +147,11 @@ TEST(Evaluate, BeyondALimitOfTheTetherIsCertainFailure) {
   const RiskReport low = riskOf({0.0, 1, 0.0}, {{0.5, 1.5, 0.5}, {2.5, 0.5, 0.5}});
   EXPECT_EQ(of(low.states[1].elements, RiskElement::kTetherLength), 1.0);
   EXPECT_EQ(riskOf({0.0, 1, -30.0}, {{0.5, 1.5, 0.5}, {2.5, 0.5, 0.5}}).risk, 0.0);
+  string->forbidBeyond(0);
+  const RiskReport touching = riskOf({}, level);
+  EXPECT_EQ(touching.risk, 1.0);
+  EXPECT_EQ(of(touching.states[1].elements, RiskElement::kContacts), 0.0);
+  EXPECT_EQ(of(touching.states[2].elements, RiskElement::kContacts), 1.0);
 }
 
 /// A random world in which every element has something to say.
@@ -216,9 +221,11 @@ RandomWorld randomWorld(std::mt19937& random, RiskMode mode) {
   std::vector<Eigen::Vector3d> poles;
   for (const double part : {0.4, 0.8})
     poles.push_back(w.map.origin + Eigen::Vector3d(part * span, between(0, 1), between(0, 1)));
-  w.string = std::make_shared<PolesString>(*w.map.reel, poles);
+  const auto string = std::make_shared<PolesString>(*w.map.reel, poles);
+  w.string = string;
   w.connectivity =
       kConnectivityNames[std::uniform_int_distribution<std::size_t>(0, 2)(random)].value;
+  if (unit(random) < 0.1) string->forbidBeyond(1);
   return w;
 }
 
@@ -229,6 +236,7 @@ std::vector<double> searchCosts(const RiskModel& model, const std::vector<CellIn
   const auto tether = [&](StackId stack, CellIndex cell) {
     const Eigen::Vector3d position = map.centre(cell);
     if (!model.elevationAllowed(string.anchor(stack), position)) return HUGE_VAL;
+    if (string.touchesForbidden(stack)) return HUGE_VAL;
     return model.tetherCost(string.length(stack, position), string.contactCount(stack));
   };
   StackId stack = string.move(kStraight, string.reel(), map.centre(walk.front()));

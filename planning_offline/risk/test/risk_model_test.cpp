@@ -161,6 +161,24 @@ TEST(RiskModel, TetherElementsNeedAString) {
     if (limit == 2) limited.tether_limits.elevation_min = -10.0;
     EXPECT_TRUE(modelOf(emptyMap(kRow, 1.0), {}, limited, string).hasTether()) << limit;
   }
+  VoxelMap sharp = emptyMap(kRow, 1.0);
+  sharp.no_contact.assign(sharp.shape.size(), 1);
+  EXPECT_TRUE(modelOf(sharp, {}, nothingOn(), string).hasTether());
+}
+
+TEST(RiskModel, TellsWhichLimitsAreBroken) {
+  const auto string = std::make_shared<PolesString>(Eigen::Vector3d(0.5, 0.5, 0.5),
+                                                    std::vector<Eigen::Vector3d>{{1.5, 0.5, 0.5}});
+  RiskParams params = nothingOn();
+  EXPECT_FALSE(modelOf(emptyMap(kRow, 1.0), {}, params, string).brokenLimits(1, {9, 0, 0}).any());
+  params.tether_limits = {3.0, 0, -10.0};
+  string->forbidBeyond(0);
+  const RiskModel model = modelOf(emptyMap(kRow, 1.0), {}, params, string);
+  EXPECT_FALSE(model.brokenLimits(0, {3.0, 0.5, 0.5}).any());
+  const BrokenLimits far = model.brokenLimits(0, {9.0, 0.5, 0.5});
+  EXPECT_TRUE(far.length && !far.contacts && !far.elevation && !far.no_contact);
+  const BrokenLimits low = model.brokenLimits(1, {2.5, -1.0, 0.5});
+  EXPECT_TRUE(!low.length && low.contacts && low.elevation && low.no_contact);
 }
 
 TEST(RiskModel, TetherCost) {

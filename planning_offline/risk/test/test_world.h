@@ -3,6 +3,7 @@
 /// @file
 /// Small maps, fields and strings made by hand for the tests of this folder.
 
+#include <limits>
 #include <memory>
 #include <random>
 #include <span>
@@ -46,10 +47,15 @@ class PolesString : public TautString {
   std::vector<Eigen::Vector3d> contacts(StackId stack) const override {
     return {poles_.begin(), poles_.begin() + stack};
   }
+  bool touchesForbidden(StackId stack) const override { return stack > allowed_; }
+
+  /// Stacks of more contacts touch what they must not.
+  void forbidBeyond(StackId count) { allowed_ = count; }
 
  private:
   Eigen::Vector3d reel_;
   std::vector<Eigen::Vector3d> poles_;
+  StackId allowed_{std::numeric_limits<StackId>::max()};
 };
 
 /// All cells free.

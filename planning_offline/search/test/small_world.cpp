@@ -26,6 +26,16 @@ double layerAt(const VoxelMap& map, const char* name, CellIndex i) {
   return values == nullptr ? 0.0 : (*values)[at(i)];
 }
 
+/// A contact touches a marked cell if it is no farther than half an edge from its centre.
+bool touchesSharp(const VoxelMap& map, const Eigen::Vector3d& contact) {
+  for (std::size_t i = 0; i < map.no_contact.size(); ++i) {
+    const Eigen::Vector3d away = contact - map.centre(static_cast<CellIndex>(i));
+    if (map.no_contact[i] != 0 && away.cwiseAbs().maxCoeff() < 0.50001 * map.resolution)
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void SmallWorld::build() {
@@ -117,6 +127,10 @@ SmallWorld randomWorld(const WorldKind& kind, std::uint32_t seed) {
                  .range = map.resolution * random.uniform(5.0, 12.0),
                  .climb_factor = random.uniform(0.0, 4.0)};
   }
+  for (std::size_t i = 0; kind.sharp && i < shape.size(); ++i) {
+    const bool sharp = random.below(2) == 0 && map.cells[i] == CellState::kOccupied;
+    map.no_contact.push_back(sharp ? 1 : 0);
+  }
   world.build();
   return world;
 }
@@ -195,6 +209,9 @@ double Oracle::tetherCost(const Tail& tail) const {
   const int n = string_->contactCount(tail.stack);
   if (limits.length_max > 0.0 && length > limits.length_max + 1e-9) return kInfinity;
   if (limits.contacts_max >= 0 && n > limits.contacts_max) return kInfinity;
+  for (const Eigen::Vector3d& contact : string_->contacts(tail.stack)) {
+    if (touchesSharp(*world_.map, contact)) return kInfinity;
+  }
   return -std::log(1.0 - std::min(p.cap, p.tether_length.per_metre * length)) -
          std::log(1.0 - std::min(p.cap, p.contacts.each * n));
 }

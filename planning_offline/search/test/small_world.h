@@ -57,7 +57,8 @@ struct WorldKind {
   bool tether{false};
   bool mud{false};
   bool battery{false};
-  int side{0};  ///< Cells along an edge; 0: as many as all simple paths can be tried on.
+  int side{0};        ///< Cells along an edge; 0: as many as all simple paths can be tried on.
+  bool sharp{false};  ///< Half of the obstacles must not be touched by the tether.
 };
 /// Random obstacles, locale risks, access characters, mud, start and parameters.
 [[nodiscard]] SmallWorld randomWorld(const WorldKind& kind, std::uint32_t seed);

@@ -47,22 +47,22 @@ TEST(PublishedContacts, AddsOneContactAWaypointAndDoesNotLookAgain) {
   const Points path{block.above, block.behind, block.behind};
   const ContactComparison both = compareContacts(block.map, block.reel, path, kIdeal);
   expectPoints(both.rows[0].published.contacts, {});
-  expectPoints(both.rows[1].exact, {block.left, block.right});
+  expectPoints(both.rows[1].exact.contacts, {block.left, block.right});
   expectPoints(both.rows[1].published.contacts, {block.left});
   EXPECT_TRUE(both.rows[1].published.pierces);
-  EXPECT_LT(both.rows[1].published_length, both.rows[1].exact_length - 1e-3);
+  EXPECT_LT(both.rows[1].published.length, both.rows[1].exact.length - 1e-3);
   expectPoints(both.rows[2].published.contacts, {block.left, block.right});
   EXPECT_FALSE(both.rows[2].published.pierces);
-  EXPECT_NEAR(both.rows[2].published_length, both.rows[2].exact_length, 1e-9);
+  EXPECT_NEAR(both.rows[2].published.length, both.rows[2].exact.length, 1e-9);
 }
 
 TEST(PublishedContacts, RelaxesOneContactAWaypoint) {
   const Block block;
   const Points path{block.above, block.behind, block.behind, block.above, block.above};
   const ContactComparison both = compareContacts(block.map, block.reel, path, kIdeal);
-  expectPoints(both.rows[3].exact, {});
+  expectPoints(both.rows[3].exact.contacts, {});
   expectPoints(both.rows[3].published.contacts, {block.left});
-  EXPECT_GT(both.rows[3].published_length, both.rows[3].exact_length + 1e-3);
+  EXPECT_GT(both.rows[3].published.length, both.rows[3].exact.length + 1e-3);
   expectPoints(both.rows[4].published.contacts, {});
 }
 
@@ -73,7 +73,7 @@ TEST(PublishedContacts, KeepsAContactWhileAnObstacleIsConfined) {
   const ContactComparison both = compareContacts(block.map, block.reel, path, kIdeal);
   EXPECT_TRUE(lineOfSight(block.map.shape, obstacleCells(block.map, false),
                           inCells(block.map, block.reel), inCells(block.map, path[2])));
-  expectPoints(both.rows[2].exact, {block.left, block.right});
+  expectPoints(both.rows[2].exact.contacts, {block.left, block.right});
   expectPoints({both.rows[2].published.contacts.at(0)}, {block.left});
   EXPECT_TRUE(both.rows[2].published.relaxation_refused);
   EXPECT_FALSE(both.rows[1].published.relaxation_refused);  // there the line is blocked
@@ -89,10 +89,10 @@ TEST(PublishedContacts, MissesWhatTheTetherSweptBetweenTwoWaypoints) {
   const VoxelMap map = drawnMap({".......", ".......", "...#...", ".......", "......."});
   const Points path{at(map, 6.5, 0.5), at(map, 6.5, 4.5)};
   const ContactComparison both = compareContacts(map, at(map, 0.5, 2.5), path, kIdeal);
-  expectPoints(both.rows[1].exact, {at(map, 3, 2), at(map, 4, 2)});
+  expectPoints(both.rows[1].exact.contacts, {at(map, 3, 2), at(map, 4, 2)});
   expectPoints(both.rows[1].published.contacts, {});
   EXPECT_FALSE(both.rows[1].published.pierces);
-  EXPECT_LT(both.rows[1].published_length, both.rows[1].exact_length - 0.1);
+  EXPECT_LT(both.rows[1].published.length, both.rows[1].exact.length - 0.1);
 }
 
 TEST(PublishedContacts, KeepsTheOldContactWhereItShouldSwitchToTheBlockingCorner) {
@@ -100,13 +100,13 @@ TEST(PublishedContacts, KeepsTheOldContactWhereItShouldSwitchToTheBlockingCorner
       {".......", ".......", "....#..", ".......", ".......", "...#...", ".......", "......."});
   const Points path{at(map, 6.5, 4.5), at(map, 6.5, 6.2), at(map, 6.5, 7.5), at(map, 5.5, 0.5)};
   const ContactComparison both = compareContacts(map, at(map, 0.5, 4.5), path, kIdeal);
-  expectPoints(both.rows[2].exact, {at(map, 4, 5)});
+  expectPoints(both.rows[2].exact.contacts, {at(map, 4, 5)});
   expectPoints(both.rows[2].published.contacts, {at(map, 4, 5)});
-  expectPoints(both.rows[3].exact, {at(map, 5, 3)});
+  expectPoints(both.rows[3].exact.contacts, {at(map, 5, 3)});
   EXPECT_TRUE(both.rows[3].published.relaxation_refused);
   ASSERT_EQ(both.rows[3].published.contacts.size(), 2U);
   expectPoints({both.rows[3].published.contacts[0]}, {at(map, 4, 5)});
-  EXPECT_GT(both.rows[3].published_length, both.rows[3].exact_length + 0.1);
+  EXPECT_GT(both.rows[3].published.length, both.rows[3].exact.length + 0.1);
 }
 
 TEST(PublishedContacts, PutsAContactOnTheWrongEndOfAWall) {
@@ -117,15 +117,15 @@ TEST(PublishedContacts, PutsAContactOnTheWrongEndOfAWall) {
   const auto contacts = [&](ContactPlacement placement) {
     options.placement = placement;
     const ContactComparison both = compareContacts(map, at(map, 0.5, 5.5), path, options);
-    expectPoints(both.rows[1].exact, {at(map, 7, 4)});
-    EXPECT_GT(std::abs(both.rows[1].published_length - both.rows[1].exact_length), 0.1);
+    expectPoints(both.rows[1].exact.contacts, {at(map, 7, 4)});
+    EXPECT_GT(std::abs(both.rows[1].published.length - both.rows[1].exact.length), 0.1);
     return both.rows[1].published;
   };
   // The line enters the wall near its left end; the vehicle went round the right one.
-  const PublishedState nearest = contacts(ContactPlacement::kNearestEdge);
+  const TetherState nearest = contacts(ContactPlacement::kNearestEdge);
   expectPoints(nearest.contacts, {at(map, 2, 4)});
   EXPECT_TRUE(nearest.pierces);
-  const PublishedState corner = contacts(ContactPlacement::kCorner);
+  const TetherState corner = contacts(ContactPlacement::kCorner);
   expectPoints(corner.contacts, {at(map, 2, 3)});
   EXPECT_FALSE(corner.pierces);  // free, but on the wrong side for good
 }

@@ -75,16 +75,16 @@ Rates rates(bool clutter, bool stride, ContactPlacement placement) {
     bool all = true;
     for (const ContactRow& row : compareContacts(map, reel, path, options).rows) {
       const Points& contacts = row.published.contacts;
-      const bool same =
-          std::equal(contacts.begin(), contacts.end(), row.exact.begin(), row.exact.end(),
-                     [](const auto& a, const auto& b) { return (a - b).norm() < 1e-6; });
+      const bool same = std::equal(
+          contacts.begin(), contacts.end(), row.exact.contacts.begin(), row.exact.contacts.end(),
+          [](const auto& a, const auto& b) { return (a - b).norm() < 1e-6; });
       all = all && same;
       rows += 1.0;
-      sum.contacts += static_cast<double>(row.exact.size());
+      sum.contacts += static_cast<double>(row.exact.contacts.size());
       sum.waypoints += same ? 1.0 : 0.0;
       sum.pierced += row.published.pierces ? 1.0 : 0.0;
       sum.worst =
-          std::max(sum.worst, std::abs(row.published_length - row.exact_length) / map.resolution);
+          std::max(sum.worst, std::abs(row.published.length - row.exact.length) / map.resolution);
     }
     paths += 1.0;
     sum.paths += all ? 1.0 : 0.0;

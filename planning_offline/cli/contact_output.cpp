@@ -1,0 +1,133 @@
+#include "planning_offline/cli/contact_output.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "planning_offline/cli/json_values.h"
+
+namespace tautline::planning {
+namespace {
+
+using nlohmann::json;
+
+std::string rounded(const Eigen::Vector3d& p) {
+  return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x(), p.y(), p.z());
+}
+
+template <class Test>
+int count(const ContactPlan& plan, Test test) {
+  return static_cast<int>(std::count_if(plan.states.begin(), plan.states.end(), test));
+}
+
+/// Friction decides within it.
+std::pair<double, double> lengthInterval(const TetherState& state) {
+  return std::minmax({state.length, state.frictionless_length.value_or(state.length)});
+}
+
+std::string lengthText(const TetherState& state) {
+  constexpr double kSame = 5e-4;  // [m]: printed alike
+  const auto [least, most] = lengthInterval(state);
+  if (most - least < kSame) return fmt::format("{:.3f}", state.length);
+  return fmt::format("{:.3f} … {:.3f}", least, most);
+}
+
+std::string eventText(const ContactEvent& event, const TetherState& state) {
+  std::string text =
+      fmt::format("{} {}", nameOf(event.kind, kContactChangeNames), rounded(event.position));
+  if (event.vehicle != state.position)
+    text += fmt::format(" on the way, at {}", rounded(event.vehicle));
+  return text;
+}
+
+}  // namespace
+
+json tetherJson(const TetherState& state) {
+  json out = {{"tether_length_m", state.length},
+              {"tether_length_interval_m", nullptr},
+              {"contacts_m", json::array()},
+              {"events", json::array()}};
+  if (state.frictionless_length) {
+    const auto [least, most] = lengthInterval(state);
+    out["tether_length_interval_m"] = {least, most};
+  }
+  for (const Eigen::Vector3d& contact : state.contacts)
+    out["contacts_m"].push_back(toJson(contact));
+  for (const ContactEvent& event : state.events) {
+    out["events"].push_back({{"kind", nameOf(event.kind, kContactChangeNames)},
+                             {"position_m", toJson(event.position)},
+                             {"vehicle_m", toJson(event.vehicle)},
+                             {"tether_length_m", event.length}});
+  }
+  return out;
+}
+
+std::string contactsText(const ContactPlan& plan) {
+  std::string out = fmt::format("{:>8} {:>8} {:>8} {:>8}  {:>17}  {:>8}  {}\n", "waypoint", "x [m]",
+                                "y [m]", "z [m]", "tether [m]", "contacts", "events");
+  for (std::size_t i = 0; i < plan.states.size(); ++i) {
+    const TetherState& s = plan.states[i];
+    out += fmt::format("{:>8} {:>8.3f} {:>8.3f} {:>8.3f}  {:>17}  {:>8}", i, s.position.x(),
+                       s.position.y(), s.position.z(), lengthText(s), s.contacts.size());
+    const char* before = "  ";
+    for (const ContactEvent& event : s.events) {
+      out += before + eventText(event, s);
+      before = "; ";
+    }
+    if (s.relaxation_refused) out += "  relaxation refused";
+    if (s.pierces) out += "  tether through an obstacle";
+    out += "\n";
+  }
+  return out;
+}
+
+std::string contactsCsv(const ContactPlan& plan) {
+  std::string out =
+      "waypoint,x_m,y_m,z_m,tether_length_m,frictionless_length_m,contacts,contacts_m,events\n";
+  for (std::size_t i = 0; i < plan.states.size(); ++i) {
+    const TetherState& s = plan.states[i];
+    const auto point = [](const Eigen::Vector3d& p) {
+      return fmt::format("{} {} {}", p.x(), p.y(), p.z());
+    };
+    std::string contacts;
+    for (const Eigen::Vector3d& contact : s.contacts)
+      contacts += (contacts.empty() ? "" : ";") + point(contact);
+    std::string events;
+    for (const ContactEvent& event : s.events) {
+      events += fmt::format("{}{} {} at {}", events.empty() ? "" : ";",
+                            nameOf(event.kind, kContactChangeNames), point(event.position),
+                            point(event.vehicle));
+    }
+    out += fmt::format("{},{},{},{},{},{},{},{},{}\n", i, s.position.x(), s.position.y(),
+                       s.position.z(), s.length,
+                       s.frictionless_length ? fmt::format("{}", *s.frictionless_length) : "",
+                       s.contacts.size(), contacts, events);
+  }
+  return out;
+}
+
+int refusedRelaxations(const ContactPlan& plan) {
+  return count(plan, [](const TetherState& state) { return state.relaxation_refused; });
+}
+
+int piercingStates(const ContactPlan& plan) {
+  return count(plan, [](const TetherState& state) { return state.pierces; });
+}
+
+std::string contactsSummary(const ContactPlan& plan) {
+  std::string out = fmt::format(
+      "{}: {} waypoints, longest tether {:.3f} m, {} contacts formed, {} released",
+      nameOf(plan.algorithm, kContactAlgorithmNames), plan.states.size(), longestTether(plan),
+      countEvents(plan, ContactChange::kPush), countEvents(plan, ContactChange::kPop));
+  if (plan.algorithm == ContactAlgorithm::kAsPublished) {
+    out += fmt::format(", {} relaxations refused, {} waypoints with the tether through an obstacle",
+                       refusedRelaxations(plan), piercingStates(plan));
+  }
+  if (plan.unresolved_moves > 0)
+    out += fmt::format(", {} legs unresolved (docs/taut_string.md)", plan.unresolved_moves);
+  return out;
+}
+
+}  // namespace tautline::planning

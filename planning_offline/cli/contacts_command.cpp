@@ -1,0 +1,233 @@
+/// @file
+/// `tautline-plan contacts`: a given path with the tether's contacts and length at every waypoint.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/mission/mission_file.h"
+#include "common/plot/figure.h"
+#include "common/toml/toml_writer.h"
+#include "planning_offline/cli/commands.h"
+#include "planning_offline/cli/contact_output.h"
+#include "planning_offline/cli/json_values.h"
+#include "planning_offline/cli/mission_output.h"
+#include "planning_offline/cli/path_file.h"
+#include "planning_offline/cli/terminal_progress.h"
+#include "planning_offline/cli/workspace.h"
+#include "planning_offline/picture/contact_picture.h"
+#include "planning_offline/risk/risk_params.h"
+#include "planning_offline/tether/contact_plan.h"
+#include "planning_offline/tether/no_contact.h"
+#include "planning_offline/tether/reel_place.h"
+
+namespace tautline::planning {
+namespace {
+
+using nlohmann::json;
+
+struct Arguments {
+  MapArguments map;
+  std::string path;
+  ContactOptions options;
+  TetherLimits limits;
+  double scale{0.0};
+  std::string axes;
+  bool json{false};
+  std::string csv;
+  std::string svg;
+  std::string output;
+};
+
+/// The map's reel, which a mission's must be: the tether is the one that it was made for.
+Eigen::Vector3d reelOf(const VoxelMap& map, const GivenPath& path, const std::string& file) {
+  constexpr double kSame = 1e-3;  // [m]
+  if (!map.reel && !path.reel) {
+    throw usage("--reel", "is missing and the map has none", "x,y,z in metres");
+  }
+  if (map.reel && path.reel && (*map.reel - *path.reel).norm() > kSame) {
+    throw InputError({.file = file,
+                      .key = "reel_position_m",
+                      .problem = fmt::format("is {}, and the reel of the map is at {}",
+                                             pointText(*path.reel), pointText(*map.reel)),
+                      .allowed = "the same place",
+                      .remedy = "correct the mission, or give its reel with --reel x,y,z"});
+  }
+  return map.reel ? *map.reel : *path.reel;
+}
+
+/// The first place on the way where the tether is beyond a hard limit.
+class LimitCheck {
+ public:
+  LimitCheck(const VoxelMap& map, const TetherLimits& limits, std::string file)
+      : no_contact_(map), limits_(limits), file_(std::move(file)) {}
+
+  /// Throws InputError (refused).
+  void check(const ContactPlan& plan) {
+    for (std::size_t i = 0; i < plan.states.size(); ++i) {
+      const TetherState& state = plan.states[i];
+      for (const ContactEvent& event : state.events) {
+        contacts_ += event.kind == ContactChange::kPush ? 1 : -1;
+        where_ = event.vehicle == state.position || i == 0
+                     ? fmt::format("waypoint {}", i)
+                     : fmt::format("on the way to waypoint {}", i);
+        checkContacts(event);
+        checkLength(event.length, event.vehicle);
+      }
+      where_ = fmt::format("waypoint {}", i);
+      checkLength(state.length, state.position);
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(std::string problem, std::string allowed, std::string remedy) const {
+    throw InputError({.file = file_,
+                      .key = where_,
+                      .problem = std::move(problem),
+                      .allowed = std::move(allowed),
+                      .remedy = std::move(remedy)},
+                     ExitCode::kRefused);
+  }
+
+  void checkLength(double length, const Eigen::Vector3d& vehicle) const {
+    if (limits_.allowsLength(length)) return;
+    refuse(fmt::format("{:.3f} m of tether at {}", length, pointText(vehicle)),
+           fmt::format("{:g} m, what the reel holds", limits_.length_max),
+           "a shorter way, or a larger --length-max-m if the reel holds more");
+  }
+
+  void checkContacts(const ContactEvent& event) const {
+    if (event.kind != ContactChange::kPush) return;
+    if (no_contact_.touchedAt(event.position)) {
+      refuse(fmt::format("the tether touches a forbidden surface at {}", pointText(event.position)),
+             "no contact there", "fly round it on the other side");
+    }
+    if (limits_.allowsContacts(contacts_)) return;
+    refuse(fmt::format("{} contacts, the last one at {}", contacts_, pointText(event.position)),
+           fmt::format("{}", limits_.contacts_max),
+           "a way with fewer bends, or a larger --contacts-max");
+  }
+
+  NoContactCells no_contact_;
+  TetherLimits limits_;
+  std::string file_;
+  int contacts_{0};
+  std::string where_;
+};
+
+json planJson(const ContactPlan& plan, const VoxelMap& map, const Arguments& arguments) {
+  json out = {{"algorithm", nameOf(plan.algorithm, kContactAlgorithmNames)},
+              {"map", map.name},
+              {"frame", "M"},
+              {"resolution_m", map.resolution},
+              {"reel_m", toJson(*map.reel)},
+              {"longest_tether_m", longestTether(plan)},
+              {"contacts_formed", countEvents(plan, ContactChange::kPush)},
+              {"contacts_released", countEvents(plan, ContactChange::kPop)},
+              {"relaxations_refused", nullptr},
+              {"tether_through_obstacles", nullptr},
+              {"unresolved_moves", plan.unresolved_moves},
+              {"settings",
+               {{"clearance_m", arguments.map.clearance},
+                {"length_max_m", arguments.limits.length_max},
+                {"contacts_max", arguments.limits.contacts_max}}},
+              {"states", json::array()}};
+  const bool published = plan.algorithm == ContactAlgorithm::kAsPublished;
+  if (published) {
+    out["relaxations_refused"] = refusedRelaxations(plan);
+    out["tether_through_obstacles"] = piercingStates(plan);
+  }
+  for (const TetherState& state : plan.states) {
+    json row = tetherJson(state);
+    row["position_m"] = toJson(state.position);
+    if (published) {
+      row["relaxation_refused"] = state.relaxation_refused;
+      row["tether_through_obstacle"] = state.pierces;
+    }
+    out["states"].push_back(std::move(row));
+  }
+  return out;
+}
+
+void writeFiles(const Arguments& arguments, const GivenPath& path, const ContactPlan& plan,
+                const VoxelMap& map) {
+  const std::string title = fmt::format("{}: {}", map.name, contactsSummary(plan));
+  std::optional<Mission> mission;  // made first: what cannot be a mission leaves no file behind
+  if (!arguments.output.empty()) {
+    mission = missionOf(plan, path.orders, map,
+                        fmt::format("{} with tether contacts, {}",
+                                    std::filesystem::path(arguments.path).filename().string(),
+                                    nameOf(plan.algorithm, kContactAlgorithmNames)),
+                        arguments.output);
+    validateMission(*mission);
+  }
+  if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, contactsCsv(plan));
+  if (!arguments.svg.empty())
+    plot::writeSvg(contactFigure(title, map, *map.reel, plan), arguments.svg);
+  if (mission) writeMission(*mission, arguments.output);
+}
+
+ExitCode run(const Arguments& arguments) {
+  TerminalProgress terminal;
+  const MapSpace space = loadMapSpace(arguments.map, terminal.progress());
+  PathFileOptions options;
+  options.reel = space.map->reel;
+  if (arguments.scale > 0.0) options.legacy.scale = arguments.scale;
+  if (!arguments.axes.empty()) options.legacy.axes = parseLegacyAxes(arguments.axes);
+  const GivenPath path = readPath(arguments.path, options);
+  VoxelMap map = *space.map;
+  map.reel = checkedReel(map, reelOf(map, path, arguments.path));
+  needFreeWay(path.points, space, arguments.path);
+  needStraightStart(map, *map.reel, path.points.front(), arguments.path);
+  const ContactPlan plan = planContacts(map, *map.reel, path.points, arguments.options);
+  LimitCheck(map, arguments.limits, arguments.path).check(plan);
+  terminal.clear();
+  writeFiles(arguments, path, plan, map);
+  if (arguments.json) {
+    fmt::print("{}\n", planJson(plan, map, arguments).dump(2));
+    return ExitCode::kOk;
+  }
+  fmt::print("{}{}\n", contactsText(plan), contactsSummary(plan));
+  for (const std::string* file : {&arguments.csv, &arguments.svg, &arguments.output}) {
+    if (!file->empty()) fmt::print("written: {}\n", *file);
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void addContactsCommand(CLI::App& app, ExitCode& result) {
+  CLI::App* verb = app.add_subcommand(
+      "contacts", "Tether contacts and length along a given path. Exit code 3 beyond a limit");
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->map.addTo(*verb);
+  verb->add_option("--path", arguments->path,
+                   "Mission, text with x y z [m] a line in the frame of the map, or legacy path")
+      ->required()
+      ->type_name("FILE");
+  addChoice(*verb, "--algorithm", arguments->options.algorithm, kContactAlgorithmNames,
+            "How contacts are found");
+  verb->add_option("--length-max-m", arguments->limits.length_max, "Tether on the reel")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--contacts-max", arguments->limits.contacts_max, "Contacts at once")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--scale", arguments->scale, "Metres per unit of a legacy path")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--axes", arguments->axes, "Axes of a legacy path, such as yzx");
+  verb->add_flag("--json", arguments->json, "Machine-readable output");
+  verb->add_option("--csv", arguments->csv, "Write the table of waypoints")->type_name("FILE");
+  verb->add_option("--svg", arguments->svg, "Draw path and tether over the map")->type_name("FILE");
+  verb->add_option("-o,--output", arguments->output, "Write the mission")
+      ->type_name("FILE.mission.toml");
+  verb->footer(
+      "Example: tautline-plan contacts --map config/scenes/one_contact.scene.toml "
+      "--path config/missions/one_contact.mission.toml --svg contacts.svg");
+  verb->callback([arguments, &result] { result = run(*arguments); });
+}
+
+}  // namespace tautline::planning
