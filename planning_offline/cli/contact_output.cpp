@@ -1,6 +1,8 @@
 #include "planning_offline/cli/contact_output.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -21,11 +23,19 @@ int count(const ContactPlan& plan, Test test) {
   return static_cast<int>(std::count_if(plan.states.begin(), plan.states.end(), test));
 }
 
+/// Between which lengths friction decides. The frictionless one is the longer one where the string
+/// without friction went another way round an obstacle.
+std::optional<std::pair<double, double>> intervalOf(const TetherState& state) {
+  if (!state.frictionless_length) return std::nullopt;
+  return std::minmax({*state.frictionless_length, state.length});
+}
+
 std::string lengthText(const TetherState& state) {
   constexpr double kSame = 5e-4;  // [m]: printed alike
-  if (!state.frictionless_length || state.length - *state.frictionless_length < kSame)
+  const auto interval = intervalOf(state);
+  if (!interval || interval->second - interval->first < kSame)
     return fmt::format("{:.3f}", state.length);
-  return fmt::format("{:.3f} … {:.3f}", *state.frictionless_length, state.length);
+  return fmt::format("{:.3f} … {:.3f}", interval->first, interval->second);
 }
 
 std::string eventText(const ContactEvent& event, const TetherState& state) {
@@ -43,8 +53,8 @@ json tetherJson(const TetherState& state) {
               {"tether_length_interval_m", nullptr},
               {"contacts_m", json::array()},
               {"events", json::array()}};
-  if (state.frictionless_length)
-    out["tether_length_interval_m"] = {*state.frictionless_length, state.length};
+  if (const auto interval = intervalOf(state))
+    out["tether_length_interval_m"] = {interval->first, interval->second};
   for (const Eigen::Vector3d& contact : state.contacts)
     out["contacts_m"].push_back(toJson(contact));
   for (const ContactEvent& event : state.events) {
@@ -110,7 +120,7 @@ int piercingStates(const ContactPlan& plan) {
 
 std::string contactsSummary(const ContactPlan& plan) {
   std::string out = fmt::format(
-      "{}: {} waypoints, longest tether {:.3f} m, {} contacts formed, {} released",
+      "{}: {} waypoints, longest tether {:.3f} m, contacts: {} formed, {} released",
       nameOf(plan.algorithm, kContactAlgorithmNames), plan.states.size(), longestTether(plan),
       countEvents(plan, ContactChange::kPush), countEvents(plan, ContactChange::kPop));
   if (plan.algorithm == ContactAlgorithm::kAsPublished) {

@@ -11,8 +11,9 @@
 
 namespace tautline::planning {
 
-/// `tether_length_m`; `tether_length_interval_m` [frictionless, pinned], null where that is not
-/// known; `contacts_m` from the reel to the vehicle; `events`.
+/// `tether_length_m`; `tether_length_interval_m`, the lengths without friction and of the pinned
+/// string, the lesser first, null where the former is not known; `contacts_m` from the reel to the
+/// vehicle; `events`.
 [[nodiscard]] nlohmann::json tetherJson(const TetherState& state);
 
 /// One row a waypoint, its events below it.

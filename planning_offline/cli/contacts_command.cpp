@@ -1,9 +1,11 @@
 /// @file
 /// `tautline-plan contacts`: a given path with the tether's contacts and length at every waypoint.
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -108,8 +110,8 @@ class LimitCheck {
              "no contact there", "fly round it on the other side");
     }
     if (limits_.allowsContacts(contacts_)) return;
-    refuse(fmt::format("{} contacts, the last one at {}", contacts_, pointText(event.position)),
-           fmt::format("{}", limits_.contacts_max),
+    refuse(fmt::format("contact number {} forms at {}", contacts_, pointText(event.position)),
+           fmt::format("at most {} at once", limits_.contacts_max),
            "a way with fewer bends, or a larger --contacts-max");
   }
 

@@ -41,7 +41,7 @@ struct TetherState {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};
   std::vector<Eigen::Vector3d> contacts{};  ///< From the reel to the vehicle.
   double length{0.0};                       ///< Taut, along the contacts.
-  /// What the length would be if contacts slid without friction: the length is between the two.
+  /// What the length would be if contacts slid without friction: the true one is between the two.
   /// Absent where it is not known.
   std::optional<double> frictionless_length{};
   /// On the way from the waypoint before, in order; at the first waypoint all its contacts. They
