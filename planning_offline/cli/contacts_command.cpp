@@ -1,6 +1,7 @@
 /// @file
 /// `tautline-plan contacts`: a given path with the tether's contacts and length at every waypoint.
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -175,6 +176,10 @@ void writeFiles(const Arguments& arguments, const GivenPath& path, const Contact
 }
 
 ExitCode run(const Arguments& arguments) {
+  for (const auto& [option, value] : {std::pair{"--length-max-m", arguments.limits.length_max},
+                                      std::pair{"--scale", arguments.scale}}) {
+    if (!std::isfinite(value)) throw usage(option, "is not a finite number", "more than 0");
+  }
   TerminalProgress terminal;
   const MapSpace space = loadMapSpace(arguments.map, terminal.progress());
   PathFileOptions options;

@@ -255,6 +255,7 @@ expect 5 'cut.txt:2: has 5 numbers' "$plan" contacts --map "$room" --path "$work
 printf 'version = 1\nname = ' >"$work/cut.mission.toml"
 expect 5 'cut.mission.toml:2' "$plan" contacts --map "$room" --path "$work/cut.mission.toml"
 expect 2 'round.txt: --scale: is for files of 6 or 9 numbers' "$plan" contacts --map "$room" --path "$work/round.txt" --scale 2
+expect 2 '--length-max-m: is not a finite number' "$plan" contacts --map "$room" --path "$work/round.txt" --length-max-m nan
 expect 2 "--axes: is 'xyy'" "$plan" contacts --map "$room" --path "$work/legacy.txt" --axes xyy
 expect 2 'legacy.txt: has 9 numbers a line.*--reel' "$plan" contacts --map "$work/tiny.map" --path "$work/legacy.txt"
 expect 2 '--reel: is missing' "$plan" contacts --map "$work/tiny.map" --path "$work/round.txt"
