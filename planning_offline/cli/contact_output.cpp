@@ -1,6 +1,7 @@
 #include "planning_offline/cli/contact_output.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -22,16 +23,19 @@ int count(const ContactPlan& plan, Test test) {
   return static_cast<int>(std::count_if(plan.states.begin(), plan.states.end(), test));
 }
 
-/// Friction decides within it.
-std::pair<double, double> lengthInterval(const TetherState& state) {
-  return std::minmax({state.length, state.frictionless_length.value_or(state.length)});
+/// Between which lengths friction decides. The frictionless one is the longer one where the string
+/// without friction went another way round an obstacle.
+std::optional<std::pair<double, double>> intervalOf(const TetherState& state) {
+  if (!state.frictionless_length) return std::nullopt;
+  return std::minmax({*state.frictionless_length, state.length});
 }
 
 std::string lengthText(const TetherState& state) {
   constexpr double kSame = 5e-4;  // [m]: printed alike
-  const auto [least, most] = lengthInterval(state);
-  if (most - least < kSame) return fmt::format("{:.3f}", state.length);
-  return fmt::format("{:.3f} … {:.3f}", least, most);
+  const auto interval = intervalOf(state);
+  if (!interval || interval->second - interval->first < kSame)
+    return fmt::format("{:.3f}", state.length);
+  return fmt::format("{:.3f} … {:.3f}", interval->first, interval->second);
 }
 
 std::string eventText(const ContactEvent& event, const TetherState& state) {
@@ -49,10 +53,8 @@ json tetherJson(const TetherState& state) {
               {"tether_length_interval_m", nullptr},
               {"contacts_m", json::array()},
               {"events", json::array()}};
-  if (state.frictionless_length) {
-    const auto [least, most] = lengthInterval(state);
-    out["tether_length_interval_m"] = {least, most};
-  }
+  if (const auto interval = intervalOf(state))
+    out["tether_length_interval_m"] = {interval->first, interval->second};
   for (const Eigen::Vector3d& contact : state.contacts)
     out["contacts_m"].push_back(toJson(contact));
   for (const ContactEvent& event : state.events) {
@@ -108,6 +110,53 @@ std::string contactsCsv(const ContactPlan& plan) {
   return out;
 }
 
+std::string comparisonText(const ContactComparison& comparison) {
+  const auto cell = [](const TetherState& state) {
+    std::string text = fmt::format("{:>8.3f}  {}", state.length, state.contacts.size());
+    for (const ContactEvent& event : state.events)
+      text +=
+          fmt::format("  {} {}", nameOf(event.kind, kContactChangeNames), rounded(event.position));
+    if (state.relaxation_refused) text += "  relaxation refused";
+    if (state.pierces) text += "  tether through an obstacle";
+    return text;
+  };
+  std::string out =
+      fmt::format("{:>8}  {:<60}  {}\n{:>8}  {:<60}  {}\n", "", "as published", "taut string",
+                  "waypoint", "length [m], contacts, changes", "length [m], contacts, changes");
+  bool refused = false;  // a run of refusals is one row
+  for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+    const auto& [published, exact] = comparison.rows[i];
+    const bool changes = !published.events.empty() || !exact.events.empty() || published.pierces ||
+                         (published.relaxation_refused && !refused);
+    refused = published.relaxation_refused;
+    if (changes || i + 1 == comparison.rows.size())
+      out += fmt::format("{:>8}  {:<60}  {}\n", i, cell(published), cell(exact));
+  }
+  return out +
+         fmt::format(
+             "{} waypoints, largest difference of length {:.3f} m, {} relaxations refused, {} "
+             "waypoints with the published tether through an obstacle\n",
+             comparison.rows.size(), largestDifference(comparison), countRefused(comparison),
+             countPierced(comparison));
+}
+
+json comparisonJson(const ContactComparison& comparison) {
+  json out = {{"relaxations_refused", countRefused(comparison)},
+              {"tether_through_obstacles", countPierced(comparison)},
+              {"largest_difference_m", largestDifference(comparison)},
+              {"unresolved_moves", comparison.unresolved_moves},
+              {"rows", json::array()}};
+  for (const auto& [published, exact] : comparison.rows) {
+    json row = {{"position_m", toJson(exact.position)},
+                {"published", tetherJson(published)},
+                {"exact", tetherJson(exact)}};
+    row["published"]["relaxation_refused"] = published.relaxation_refused;
+    row["published"]["tether_through_obstacle"] = published.pierces;
+    out["rows"].push_back(std::move(row));
+  }
+  return out;
+}
+
 int refusedRelaxations(const ContactPlan& plan) {
   return count(plan, [](const TetherState& state) { return state.relaxation_refused; });
 }
@@ -118,7 +167,7 @@ int piercingStates(const ContactPlan& plan) {
 
 std::string contactsSummary(const ContactPlan& plan) {
   std::string out = fmt::format(
-      "{}: {} waypoints, longest tether {:.3f} m, {} contacts formed, {} released",
+      "{}: {} waypoints, longest tether {:.3f} m, contacts: {} formed, {} released",
       nameOf(plan.algorithm, kContactAlgorithmNames), plan.states.size(), longestTether(plan),
       countEvents(plan, ContactChange::kPush), countEvents(plan, ContactChange::kPop));
   if (plan.algorithm == ContactAlgorithm::kAsPublished) {

@@ -1,9 +1,12 @@
 /// @file
 /// `tautline-plan contacts`: a given path with the tether's contacts and length at every waypoint.
 
+#include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -38,6 +41,7 @@ struct Arguments {
   TetherLimits limits;
   double scale{0.0};
   std::string axes;
+  bool compare{false};
   bool json{false};
   std::string csv;
   std::string svg;
@@ -108,8 +112,8 @@ class LimitCheck {
              "no contact there", "fly round it on the other side");
     }
     if (limits_.allowsContacts(contacts_)) return;
-    refuse(fmt::format("{} contacts, the last one at {}", contacts_, pointText(event.position)),
-           fmt::format("{}", limits_.contacts_max),
+    refuse(fmt::format("contact number {} forms at {}", contacts_, pointText(event.position)),
+           fmt::format("at most {} at once", limits_.contacts_max),
            "a way with fewer bends, or a larger --contacts-max");
   }
 
@@ -172,7 +176,28 @@ void writeFiles(const Arguments& arguments, const GivenPath& path, const Contact
   if (mission) writeMission(*mission, arguments.output);
 }
 
+ExitCode compare(const Arguments& arguments, const GivenPath& path, const VoxelMap& map) {
+  const ContactComparison both = compareContacts(map, *map.reel, path.points);
+  if (!arguments.svg.empty()) {
+    plot::writeSvg(
+        comparisonFigure(fmt::format("{}: contacts as published and of the taut string", map.name),
+                         map, *map.reel, both),
+        arguments.svg);
+  }
+  if (arguments.json) {
+    fmt::print("{}\n", comparisonJson(both).dump(2));
+    return ExitCode::kOk;
+  }
+  fmt::print("{}", comparisonText(both));
+  if (!arguments.svg.empty()) fmt::print("written: {}\n", arguments.svg);
+  return ExitCode::kOk;
+}
+
 ExitCode run(const Arguments& arguments) {
+  for (const auto& [option, value] : {std::pair{"--length-max-m", arguments.limits.length_max},
+                                      std::pair{"--scale", arguments.scale}}) {
+    if (!std::isfinite(value)) throw usage(option, "is not a finite number", "more than 0");
+  }
   TerminalProgress terminal;
   const MapSpace space = loadMapSpace(arguments.map, terminal.progress());
   PathFileOptions options;
@@ -184,6 +209,7 @@ ExitCode run(const Arguments& arguments) {
   map.reel = checkedReel(map, reelOf(map, path, arguments.path));
   needFreeWay(path.points, space, arguments.path);
   needStraightStart(map, *map.reel, path.points.front(), arguments.path);
+  if (arguments.compare) return compare(arguments, path, map);
   const ContactPlan plan = planContacts(map, *map.reel, path.points, arguments.options);
   LimitCheck(map, arguments.limits, arguments.path).check(plan);
   terminal.clear();
@@ -212,6 +238,8 @@ void addContactsCommand(CLI::App& app, ExitCode& result) {
       ->type_name("FILE");
   addChoice(*verb, "--algorithm", arguments->options.algorithm, kContactAlgorithmNames,
             "How contacts are found");
+  CLI::Option* both = verb->add_flag("--compare", arguments->compare,
+                                     "Both algorithms side by side, where they change");
   verb->add_option("--length-max-m", arguments->limits.length_max, "Tether on the reel")
       ->check(CLI::PositiveNumber);
   verb->add_option("--contacts-max", arguments->limits.contacts_max, "Contacts at once")
@@ -220,10 +248,13 @@ void addContactsCommand(CLI::App& app, ExitCode& result) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--axes", arguments->axes, "Axes of a legacy path, such as yzx");
   verb->add_flag("--json", arguments->json, "Machine-readable output");
-  verb->add_option("--csv", arguments->csv, "Write the table of waypoints")->type_name("FILE");
+  verb->add_option("--csv", arguments->csv, "Write the table of waypoints")
+      ->type_name("FILE")
+      ->excludes(both);
   verb->add_option("--svg", arguments->svg, "Draw path and tether over the map")->type_name("FILE");
   verb->add_option("-o,--output", arguments->output, "Write the mission")
-      ->type_name("FILE.mission.toml");
+      ->type_name("FILE.mission.toml")
+      ->excludes(both);
   verb->footer(
       "Example: tautline-plan contacts --map config/scenes/one_contact.scene.toml "
       "--path config/missions/one_contact.mission.toml --svg contacts.svg");

@@ -46,8 +46,22 @@ std::vector<Points> drawnTethers(const Eigen::Vector3d& reel, const ContactPlan&
   return tethers;
 }
 
-void addMarkers(Drawing& drawing, const Eigen::Vector3d& reel, const ContactPlan& plan) {
+void addEnds(Drawing& drawing, const Eigen::Vector3d& reel, const Points& path) {
   drawing.markers.push_back({.at = reel, .symbol = Symbol::kSquare, .size = 1.3, .name = "reel"});
+  if (path.empty()) return;
+  drawing.markers.push_back({.at = path.front(),
+                             .symbol = Symbol::kCircle,
+                             .colour = Colour::kGreen,
+                             .size = 1.6,
+                             .name = "start"});
+  drawing.markers.push_back({.at = path.back(),
+                             .symbol = Symbol::kCross,
+                             .colour = Colour::kPurple,
+                             .size = 1.6,
+                             .name = "end"});
+}
+
+void addContacts(Drawing& drawing, const ContactPlan& plan) {
   const char* name = "contact";
   for (const TetherState& state : plan.states) {
     for (const ContactEvent& event : state.events) {
@@ -59,17 +73,34 @@ void addMarkers(Drawing& drawing, const Eigen::Vector3d& reel, const ContactPlan
                                  .name = std::exchange(name, "")});
     }
   }
-  if (plan.states.empty()) return;
-  drawing.markers.push_back({.at = plan.states.front().position,
-                             .symbol = Symbol::kCircle,
-                             .colour = Colour::kGreen,
-                             .size = 1.6,
-                             .name = "start"});
-  drawing.markers.push_back({.at = plan.states.back().position,
-                             .symbol = Symbol::kCross,
-                             .colour = Colour::kPurple,
-                             .size = 1.6,
-                             .name = "end"});
+}
+
+/// The last waypoint with the most contacts of both.
+const ContactRow& mostBent(const ContactComparison& comparison) {
+  const auto contacts = [](const ContactRow& row) {
+    return row.published.contacts.size() + row.exact.contacts.size();
+  };
+  const ContactRow* most = &comparison.rows.front();
+  for (const ContactRow& row : comparison.rows) {
+    if (contacts(row) >= contacts(*most)) most = &row;
+  }
+  return *most;
+}
+
+void addTether(Drawing& drawing, const std::string& name, const Eigen::Vector3d& reel,
+               const TetherState& state, Style style, Colour colour, Symbol symbol) {
+  drawing.curves.push_back({.name = name,
+                            .points = tether(reel, state.contacts, state.position),
+                            .style = style,
+                            .colour = colour});
+  for (const Eigen::Vector3d& contact : state.contacts) {
+    drawing.markers.push_back(
+        {.at = contact,
+         .symbol = symbol,
+         .colour = colour,
+         .size = 1.2,
+         .name = contact == state.contacts.front() ? "contact, " + name : ""});
+  }
 }
 
 }  // namespace
@@ -95,11 +126,42 @@ plot::Figure contactFigure(const std::string& title, const VoxelMap& map,
   }
   const bool crowded = path.size() > kPointsDrawn;
   drawing.curves.push_back({.name = "path",
-                            .points = std::move(path),
+                            .points = path,
                             .style = crowded ? Style::kLine : Style::kLinePoints,
                             .colour = Colour::kBlue,
                             .width = 2.0});
-  addMarkers(drawing, reel, plan);
+  addContacts(drawing, plan);
+  addEnds(drawing, reel, path);
+  return mapFigure(map, drawing);
+}
+
+plot::Figure comparisonFigure(const std::string& title, const VoxelMap& map,
+                              const Eigen::Vector3d& reel, const ContactComparison& comparison) {
+  Points path;
+  Points refused;
+  for (const ContactRow& row : comparison.rows) {
+    path.push_back(row.exact.position);
+    if (row.published.relaxation_refused) refused.push_back(row.exact.position);
+  }
+  Points seen = path;
+  seen.push_back(reel);
+  Drawing drawing = mapDrawing(title, map, seen);
+  drawing.curves.push_back(
+      {.name = "path", .points = path, .style = Style::kLine, .colour = Colour::kGrey});
+  if (!comparison.rows.empty()) {
+    const ContactRow& row = mostBent(comparison);
+    addTether(drawing, "taut string", reel, row.exact, Style::kLine, Colour::kBlue,
+              Symbol::kCircle);
+    addTether(drawing, "as published", reel, row.published, Style::kDashed, Colour::kVermilion,
+              Symbol::kDiamond);
+  }
+  if (!refused.empty()) {
+    drawing.curves.push_back({.name = "relaxation refused",
+                              .points = std::move(refused),
+                              .style = Style::kPoints,
+                              .colour = Colour::kOrange});
+  }
+  addEnds(drawing, reel, path);
   return mapFigure(map, drawing);
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/plot/figure.h"
 #include "planning_offline/map/voxel_map.h"
+#include "planning_offline/tether/compare_contacts.h"
 #include "planning_offline/tether/contact_plan.h"
 
 namespace tautline::planning {
@@ -17,5 +18,11 @@ namespace tautline::planning {
 /// that are in their way. All of M.
 [[nodiscard]] plot::Figure contactFigure(const std::string& title, const VoxelMap& map,
                                          const Eigen::Vector3d& reel, const ContactPlan& plan);
+
+/// Path, and both tethers at the last waypoint with the most contacts; the waypoints at which a
+/// relaxation was refused.
+[[nodiscard]] plot::Figure comparisonFigure(const std::string& title, const VoxelMap& map,
+                                            const Eigen::Vector3d& reel,
+                                            const ContactComparison& comparison);
 
 }  // namespace tautline::planning

@@ -47,7 +47,6 @@ class StackLog {
   StackLog(const Eigen::Vector3d& reel, double resolution)
       : reel_(reel), tolerance_(kSameContact * resolution) {}
 
-  [[nodiscard]] const Points& contacts() const noexcept { return contacts_; }
   [[nodiscard]] bool is(const Points& contacts) const {
     return same(contacts_, contacts, tolerance_);
   }

@@ -214,7 +214,7 @@ holds "risk reads legacy paths too" "len(j['states']) == 3 and 0 < j['risk'] < 1
 # Hard limits of the tether.
 sed 's/name = "pillar"/name = "pillar"\nsharp = true/' "$room" >"$work/sharp.scene.toml"
 expect 3 'round.txt: waypoint 2: .* m of tether at .*; allowed: 3.5 m.*--length-max-m' "$plan" contacts --map "$room" --path "$work/round.txt" --length-max-m 3.5
-expect 3 'round.txt: on the way to waypoint 2: 1 contacts.*; allowed: 0;.*--contacts-max' "$plan" contacts --map "$room" --path "$work/round.txt" --contacts-max 0
+expect 3 'round.txt: on the way to waypoint 2: contact number 1 forms at .*; allowed: at most 0 at once;.*--contacts-max' "$plan" contacts --map "$room" --path "$work/round.txt" --contacts-max 0
 expect 3 'round.txt: on the way to waypoint 2: the tether touches a forbidden surface at \(1.6,.*other side' "$plan" contacts --map "$work/sharp.scene.toml" \
   --path "$work/round.txt" -o "$work/no.mission.toml" --svg "$work/no.svg"
 expect 3 'forbidden surface' "$plan" contacts --map "$room" --no-contact 1.5,0,2,1.8,2,2.5 --path "$work/round.txt"
@@ -246,7 +246,7 @@ printf 'type octile\nheight 3\nwidth 3\nmap\n...\n...\n...\n' >"$work/tiny.map"
 expect 2 '--output.*no reel|--output.*place of the reel' "$plan" plan --map "$work/tiny.map" --start 0.5,0.5,0.5 --goal 2.5,0.5,2.5 \
   --svg "$work/no.svg" --csv "$work/no.csv" -o "$work/no.mission.toml"
 [[ -e $work/no.svg || -e $work/no.csv ]] && fail "a plan without a place for its mission wrote files" "$work/no.*"
-expect 5 'nowhere/x.csv' "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --csv "$work/nowhere/x.csv"
+expect 5 'nowhere/x.csv' "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --planner additive --csv "$work/nowhere/x.csv"
 expect 2 '--straight-tether.*does not reach the goal' "$plan" plan --map "$room" --straight-tether --goal 3.5,1.1,3.5
 expect 5 'reel.*too far' "$plan" reach --map "$room" --reel 100000,0,0
 expect 2 "--connectivity: is '6'; allowed: faces.edges.vertices" "$plan" plan --map "$room" --connectivity 6 --goal 3.5,1.1,3.5
@@ -283,6 +283,7 @@ expect 5 'cut.txt:2: has 5 numbers' "$plan" contacts --map "$room" --path "$work
 printf 'version = 1\nname = ' >"$work/cut.mission.toml"
 expect 5 'cut.mission.toml:2' "$plan" contacts --map "$room" --path "$work/cut.mission.toml"
 expect 2 'round.txt: --scale: is for files of 6 or 9 numbers' "$plan" contacts --map "$room" --path "$work/round.txt" --scale 2
+expect 2 '--length-max-m: is not a finite number' "$plan" contacts --map "$room" --path "$work/round.txt" --length-max-m nan
 expect 2 "--axes: is 'xyy'" "$plan" contacts --map "$room" --path "$work/legacy.txt" --axes xyy
 expect 2 'legacy.txt: has 9 numbers a line.*--reel' "$plan" contacts --map "$work/tiny.map" --path "$work/legacy.txt"
 expect 2 '--reel: is missing' "$plan" contacts --map "$work/tiny.map" --path "$work/round.txt"
