@@ -106,6 +106,19 @@ and j['straight_within_length'] <= j['with_contacts_within_length'] <= j['with_c
 and j['with_contacts_within_limits'] < j['with_contacts_within_elevation'] < 990 and j['with_contacts'] == 990 \
 and abs(j['with_contacts_within_elevation'] / 990 - j['with_contacts_within_elevation_fraction']) < 1e-12" \
   "$plan" reach --map "$shaft" --length-max-m 2.97 --elevation-min-deg 20 --json
+round=$config/scenes/dissertation/shaft_two_contacts.path.txt
+holds "contacts of the taut string" "j['algorithm'] == 'exact' and j['contacts_formed'] == 2 and j['contacts_released'] == 0 and len(j['states']) == 69 \
+and [len(s['contacts_m']) for s in j['states']] == [0] * 34 + [1] * 18 + [2] * 17 and j['relaxations_refused'] is None \
+and all(s['tether_length_interval_m'][0] <= s['tether_length_m'] + 1e-9 for s in j['states']) \
+and j['states'][-1]['tether_length_interval_m'][0] < j['states'][-1]['tether_length_m'] - 1e-3" \
+  "$plan" contacts --map "$shaft" --path "$round" --json
+holds "contacts as published" "j['algorithm'] == 'as-published' and j['relaxations_refused'] == 10 and j['tether_through_obstacles'] == 0 \
+and abs(j['states'][-1]['tether_length_m'] - 5.2984) < 1e-4 and [e['kind'] for s in j['states'] for e in s['events']] == ['push', 'push']" \
+  "$plan" contacts --map "$shaft" --path "$round" --algorithm as-published --json
+holds "both side by side" "len(j['rows']) == 69 and j['relaxations_refused'] == 10 and abs(j['largest_difference_m'] - 0.063) < 1e-3 \
+and abs(j['rows'][-1]['exact']['tether_length_m'] - 5.2359) < 1e-4 and j['rows'][50]['published']['relaxation_refused'] is True" \
+  "$plan" contacts --map "$shaft" --path "$round" --compare --json --svg "$work/both.svg"
+grep -q 'relaxation refused' "$work/both.svg" || fail "the comparison's picture"
 holds "fields" "j['fields']['distance']['min'] > 0 and 0 < j['fields']['locale_risk']['max'] < 1 and j['fields']['contacts']['max'] >= 1 \
 and 0 <= j['fields']['tether_length']['min'] < j['fields']['tether_length']['max'] < 10" "$plan" fields --map "$room" --json
 holds "one field of the paths" "list(j['fields']) == ['tether_length'] and 4 < j['fields']['tether_length']['max'] < 8" \
