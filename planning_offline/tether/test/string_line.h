@@ -21,7 +21,8 @@ namespace tautline::planning {
 /// out; up to one cell [cells].
 [[nodiscard]] double depth(const VoxelMap& map, const Eigen::Vector3d& p_M);
 
-/// How deep the line goes into the union of the occupied cells [cells]. Samples are 0.04 cells apart.
+/// How deep the line goes into the union of the occupied cells [cells]. Samples are 0.04 cells
+/// apart.
 [[nodiscard]] double deepest(const VoxelMap& map, const std::vector<Eigen::Vector3d>& line);
 
 /// How often a closed line, the last point joined to the first, goes round the axis through
