@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Shared by ./run, toolchain/demo.sh and .ci/run. Sourced, never run.
 
 say() { printf '\033[1m== %s\033[0m\n' "$*"; }
@@ -34,7 +35,7 @@ missing_packages() {
 
 # install_packages [SECTION…]: what is always needed, and the named sections.
 install_packages() {
-  local sudo= missing
+  local sudo="" missing
   read -r -d '' -a missing < <(missing_packages "$@") || true
   [[ ${#missing[@]} -gt 0 ]] || return 0
   if [[ $(id -u) != 0 ]]; then

@@ -1,8 +1,10 @@
+# shellcheck shell=bash
 # Debian packages of any architecture, unpacked into a folder: no root, nothing installed. Sourced, never run; needs lib.sh.
 # A private apt root (own state and cache) keeps the machine's own apt out of it; where packages come from is copied from
 # the machine's apt configuration.
 
-apt_root() { echo "$PWD/build/apt-$1"; }  # apt_root ARCHITECTURE
+unpack_base=$PWD/build
+apt_root() { echo "$unpack_base/apt-$1"; }  # apt_root ARCHITECTURE
 
 # Of the machine's package sources, those of Debian itself, for any architecture.
 debian_sources() { # debian_sources FOLDER
@@ -60,7 +62,7 @@ unpack_packages() {
   wanted="$architecture $depth $*"
   [[ $(cat "$folder/.packages" 2>/dev/null) != "$wanted" ]] || return 0
   root=$(apt_root "$architecture")
-  say "unpacking $* ($architecture) into ${folder#"$PWD"/}"
+  say "unpacking $* ($architecture) into build/${folder##*/}"
   update_apt_root "$architecture" || return 1
   rm -rf "$folder.new" "$root"/cache/archives/*.deb
   mkdir -p "$folder.new"
