@@ -55,7 +55,7 @@ update_apt_root() { # update_apt_root ARCHITECTURE
 }
 
 # unpack_packages ARCHITECTURE FOLDER all|only PACKAGE…: unpacks the packages, with all or nothing of what they depend on.
-# Does nothing if FOLDER already holds them. A metapackage without files of its own stands for what it depends on.
+# Does nothing if FOLDER already holds them. The kernel's metapackage stands for the kernel that it depends on.
 unpack_packages() {
   local architecture=$1 folder=$2 depth=$3 root wanted package real
   shift 3
@@ -71,7 +71,7 @@ unpack_packages() {
   else
     for package in "$@"; do
       real=$(private_apt "$architecture" apt-cache depends --no-recommends --no-suggests "$package" |
-        sed -nE "s/^ *Depends: (${package%-*}-[0-9][^ ]*)\$/\1/p" | head -n 1)
+        sed -nE "s/^ *Depends: (linux-image-[0-9][^ ]*)\$/\1/p" | head -n 1)
       (cd "$root/cache/archives" && quietly private_apt "$architecture" apt-get download "${real:-$package}") || return 1
     done
   fi

@@ -1,6 +1,6 @@
 /// @file
-/// One frame over a virtual CAN bus, through the kernel: proves the machine of `./run vcan`, not our drivers. Needs nothing
-/// of the project, so that a failure here is the machine's.
+/// One frame over a virtual CAN bus, through the kernel: proves the machine of `./run vcan`, not
+/// our drivers. Needs nothing of the project, so that a failure here is the machine's.
 
 #include <linux/can.h>
 #include <linux/can/raw.h>
@@ -66,8 +66,8 @@ TEST(VcanSmokeTest, AFrameArrivesAsItWasSent) {
                  << "); ./run vcan runs this test in one that has it";
   }
   if (::if_nametoindex(interface.c_str()) == 0) {
-    GTEST_SKIP() << "no interface " << interface << "; as root: ip link add " << interface
-                 << " type vcan && ip link set " << interface << " up; or ./run vcan";
+    GTEST_SKIP() << "no interface " << interface << "; as root: ip link add "
+                 << interface << " type vcan && ip link set " << interface << " up; or ./run vcan";
   }
   const CanSocket receiver(interface);
   ASSERT_TRUE(sender.bound());
