@@ -10,7 +10,7 @@ mission='' scene='' collect='' device='' started_at='' limit_s=''
 # shellcheck source=/dev/null
 . /job
 
-tell() { echo "pi: $*" >/dev/console; }
+tell() { printf '\npi: %s\n' "$*" >/dev/console; }
 finish() { # finish CODE [WHY]
   [ -z "${2:-}" ] || tell "error: $2"
   hand_out
@@ -24,7 +24,7 @@ hand_out() {
   dmesg >/flight/dmesg.txt
   case $collect in
     9p) cp /flight/* /mnt/ && sync && umount /mnt ;;
-    sd) tar -c -C /flight . | dd of=/dev/mmcblk0 bs=64k 2>/dev/null && sync ;;
+    sd) (cd /flight && tar -c -- *) | dd of=/dev/mmcblk0 bs=64k 2>/dev/null && sync ;;
   esac || tell "error: the results could not be handed out"
 }
 
@@ -70,17 +70,24 @@ operator() {
   tell "$(tail -n 1 /flight/said)"
   return $operator_code
 }
-fly() {
-  tautline status --wait 60 >>/flight/operator.txt 2>&1 || { tell "error: the station did not start: $(tail -n 1 /flight/station.txt)"; return 4; }
-  i=0
-  until operator arm; do
-    i=$((i + 1)); [ $i -lt 20 ] || return 3
+# again TIMES COMMAND…: until it succeeds. An emulated processor that the host lets stand still for a second makes the
+# sensors stale, and the station rightly refuses or holds; then the operator asks again, as one would.
+again() {
+  left=$1
+  shift
+  until "$@"; do
+    left=$((left - 1)); [ $left -gt 0 ] || return 1
     sleep 2
   done
-  operator takeoff --timeout 180 || return
-  operator navigate "/opt/tautline/config/missions/$mission" --timeout "$limit_s"
+}
+get_airborne() { operator arm && operator takeoff --timeout 120; }
+fly() {
+  tautline status --wait 60 >>/flight/operator.txt 2>&1 ||
+    { tell "error: the station did not start: $(tail -n 1 /flight/station.txt)"; return 4; }
+  again 10 get_airborne || return 3
+  again 3 operator navigate "/opt/tautline/config/missions/$mission" --timeout "$limit_s"
   navigated=$?
-  operator land --timeout 300 || return
+  again 3 operator land --timeout 180 || return 1
   return $navigated
 }
 fly
