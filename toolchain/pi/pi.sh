@@ -145,9 +145,14 @@ EOF
 
 say "flying $name (seed $seed) on an emulated ${board/virt/Cortex-A72}; log and pictures go to $out"
 make_initramfs
+# Both ends run against the wall clock: where that is allowed, they come before the host's ordinary processes.
+prefer() { # prefer PRIORITY PID
+  chrt --all-tasks --rr --pid "$1" "$2" 2>/dev/null || true
+}
 link=$work/uart
 build/bin/tautline-sim --pty "$link" --scene "$scene" --seed "$seed" --config config/sim.toml --no-lcm >"$out/sim.txt" 2>&1 &
 sim=$!; pids+=("$sim")
+prefer 21 "$sim"
 for _ in $(seq 100); do [[ -e $link ]] && break; sleep 0.1; done
 [[ -e $link ]] || error 1 "the simulator did not start: $(tail -n 1 "$out/sim.txt")"
 
@@ -171,14 +176,8 @@ else
 fi
 qemu-system-aarch64 "${arguments[@]}" -append "$append" >"$out/qemu.txt" 2>&1 </dev/null &
 qemu=$!; pids+=("$qemu")
+[[ $board != virt ]] || prefer 20 "$qemu"  # the four processors of raspi3b spin while it boots
 SECONDS=0
-
-# Both ends run against the wall clock: once the machine is up, they come before the host's ordinary processes, where that
-# is allowed. Not earlier: a board's processors spin while it boots.
-prefer() {
-  local pid
-  for pid in "$qemu" "$sim"; do chrt --all-tasks --rr --pid 1 "$pid" 2>/dev/null || true; done
-}
 
 # Shows the lines that the machine has for us, and waits for its last one, its end, or the limit.
 shown=0
@@ -192,7 +191,7 @@ while [[ -z $code ]]; do
   mapfile -t lines < <(head -n "$(wc -l <"$out/console.txt")" "$out/console.txt" | tr -d '\r' | sed -n 's/^pi: //p')
   for line in "${lines[@]:shown}"; do
     if [[ $line == "exit "* ]]; then code=${line#exit }; else $headless || echo "  $line"; fi
-    [[ $line != "booted in"* ]] || prefer
+    [[ $line != "booted in"* ]] || prefer 20 "$qemu"
   done
   shown=${#lines[@]}
   [[ -z $code ]] || break
