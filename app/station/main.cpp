@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "app/station/black_box.h"
+#include "app/station/emulated_machine.h"
 #include "app/station/lcm_link.h"
 #include "app/station/real_time_loop.h"
 #include "app/station/station.h"
@@ -74,7 +75,8 @@ StationConfig effectiveConfig(const Options& o) {
     config.core.guidance.home_position_m = *scene.start;
   }
   // A bench must never move a real machine, whatever is plugged in later.
-  config.serial.pseudo_terminal_only = config.run_mode != RunMode::kReal;
+  config.serial.pseudo_terminal_only =
+      config.run_mode != RunMode::kReal && !thisMachineHasEmulatedUart();
   return config;
 }
 
