@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Shared by ./run, toolchain/demo.sh and .ci/run. Sourced, never run.
 
 say() { printf '\033[1m== %s\033[0m\n' "$*"; }
@@ -14,29 +15,40 @@ quietly() {
   rm -f "$log"
 }
 
-# Every package of the one list that is not installed.
+# packages_of SECTION: the packages of a section of the one list; without a section those that are always needed.
+packages_of() {
+  awk -v wanted="${1:-}" '
+    { sub(/#.*/, "") }
+    /^\[/ { section = $0; gsub(/[][]|[[:space:]]+$/, "", section); next }
+    section == wanted && NF { print $1 }' toolchain/packages.txt
+}
+
+# missing_packages [SECTION…]: those that are not installed.
 missing_packages() {
-  local package
-  sed -e 's/#.*//' -e '/^[[:space:]]*$/d' toolchain/packages.txt | while read -r package; do
-    dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || echo "$package"
+  local section package
+  for section in "" "$@"; do
+    packages_of "$section" | while read -r package; do
+      dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || echo "$package"
+    done
   done
 }
 
+# install_packages [SECTION…]: what is always needed, and the named sections.
 install_packages() {
-  local missing sudo=
-  missing=$(missing_packages)
-  [[ -n $missing ]] || return 0
+  local sudo="" missing
+  read -r -d '' -a missing < <(missing_packages "$@") || true
+  [[ ${#missing[@]} -gt 0 ]] || return 0
   if [[ $(id -u) != 0 ]]; then
     command -v sudo >/dev/null || {
-      echo "run: error: missing packages and no right to install them; as root: apt-get install" $missing >&2
+      echo "run: error: missing packages and no right to install them; as root: apt-get install ${missing[*]}" >&2
       exit 1
     }
     sudo=sudo
   fi
-  say "installing" $missing
+  say "installing ${missing[*]}"
   quietly $sudo apt-get update
-  # shellcheck disable=SC2086
-  quietly $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+  quietly $sudo env DEBIAN_FRONTEND=noninteractive \
+    apt-get -o DPkg::Lock::Timeout=300 install -y --no-install-recommends "${missing[@]}"
 }
 
 # cached_option NAME DEFAULT: value of a CMake option in the release tree, so that `demo` does not undo what `test` built.
