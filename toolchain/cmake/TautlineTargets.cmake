@@ -17,6 +17,7 @@ target_compile_options(tautline_flags INTERFACE
   -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion
   -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Wcast-qual -Wformat=2 -Wimplicit-fallthrough
   -ffp-contract=off)  # same floating-point results on x86-64 and aarch64
+target_link_options(tautline_flags INTERFACE -Wl,-z,now)  # no symbol is looked up for the first time inside the loop
 if(TAUTLINE_SANITIZE)
   target_compile_options(tautline_flags INTERFACE
     -fsanitize=${TAUTLINE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
