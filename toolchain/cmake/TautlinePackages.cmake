@@ -33,8 +33,8 @@ file(MAKE_DIRECTORY "${CMAKE_BINARY_DIR}/packaging")
 execute_process(COMMAND gzip -9nc "${TAUTLINE_PACKAGING}/changelog" OUTPUT_FILE "${CMAKE_BINARY_DIR}/packaging/changelog.gz"
                 COMMAND_ERROR_IS_FATAL ANY)
 
-set(base "libc6 (>= 2.36), libgcc-s1 (>= 12), libstdc++6 (>= 12)")
-set(base_lcm "${base}, liblcm1 (>= 1.3.1), libglib2.0-0 (>= 2.74)")
+set(base "libc6 (>= 2.35), libgcc-s1 (>= 3.4), libstdc++6 (>= 11), libtomlplusplus3 (>= 3.2.0)")
+set(base_lcm "${base}, liblcm1")
 
 tautline_package(station
   PROGRAMS tautline-station

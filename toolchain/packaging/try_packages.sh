@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Tries the packages of ./run package in a fresh Debian 12 of their own: install, services verified by systemd, upgrade that
-# keeps a changed config, removal, purge. Needs root; takes some minutes; uses this machine's own package sources.
+# keeps a changed config, removal, purge; and the services running under a systemd of their own (systemd-nspawn). Needs root;
+# takes some minutes; uses this machine's own package sources.
 #
 #     sudo toolchain/packaging/try_packages.sh [FOLDER_OF_PACKAGES]
 # shellcheck disable=SC2016  # what stands in single quotes is for apt or for a shell inside
@@ -42,16 +43,20 @@ inside() { chroot "$jail" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root L
 absent() { [[ ! -e $jail/$1 ]]; }
 not() { ! "$@"; }
 
+mount_kernel() {
+  mount -t proc proc "$jail/proc"
+  mount -t sysfs -o ro sysfs "$jail/sys"
+}
+
 make_jail() {
   local mirror
   mirror=$(apt-get indextargets --format '$(CODENAME) $(LABEL) $(REPO_URI)' 'Created-By: Packages' |
     awk '$1 == "bookworm" && $2 == "Debian" { print $3; exit }')
   [[ -n $mirror ]] || { echo "try_packages: error: this machine knows no mirror of Debian 12" >&2; exit 1; }
   say "a fresh Debian 12"
-  quietly debootstrap --variant=minbase --include=systemd,udev bookworm "$jail" "$mirror"
+  quietly debootstrap --variant=minbase --include=systemd,systemd-sysv,udev,dbus bookworm "$jail" "$mirror"
   cp /etc/resolv.conf /etc/hosts "$jail/etc/"
-  mount -t proc proc "$jail/proc"
-  mount -t sysfs -o ro sysfs "$jail/sys"
+  mount_kernel
   printf '#!/bin/sh\nexit 101\n' >"$jail/usr/sbin/policy-rc.d"
   chmod +x "$jail/usr/sbin/policy-rc.d"
   quietly inside apt-get update
@@ -74,6 +79,42 @@ make_next_version() {
   cp "$work/next"/*.deb "$jail/next/"
 }
 
+# Boots the jail with the installed packages and lets service_probe.sh look at the services.
+try_services() {
+  install -m 755 "$root/toolchain/packaging/service_probe.sh" "$jail/usr/local/bin/service_probe"
+  cat >"$jail/etc/systemd/system/probe.service" <<'UNIT'
+[Unit]
+After=basic.target
+[Service]
+Type=oneshot
+ExecStart=/usr/local/bin/service_probe
+[Install]
+WantedBy=multi-user.target
+UNIT
+  # Where this machine may not raise limits (a container), the rights come as capabilities.
+  if ! prlimit --memlock=unlimited:unlimited true 2>/dev/null; then
+    echo "note    limits cannot be raised here; the station gets CAP_SYS_NICE and CAP_IPC_LOCK instead"
+    mkdir -p "$jail/etc/systemd/system/tautline-station.service.d"
+    printf '[Service]\nAmbientCapabilities=CAP_SYS_NICE CAP_IPC_LOCK\n' >"$jail/etc/systemd/system/tautline-station.service.d/rights.conf"
+  fi
+  quietly inside systemctl enable probe.service
+  umount "$jail/proc" "$jail/sys"
+  cp "$jail/etc/tautline/station.toml" "$work/station.toml"
+  timeout 240 systemd-nspawn --quiet --directory="$jail" --register=no --keep-unit --private-network --capability=all --boot \
+    >"$work/boot.log" 2>&1 || true
+  cp "$work/station.toml" "$jail/etc/tautline/station.toml"
+  mount_kernel
+  inside systemctl disable probe.service >/dev/null 2>&1
+  rm -rf "$jail"/etc/systemd/system/{probe.service,tautline-station.service.d}
+  [[ -s $jail/probe.txt ]] || tail -n 20 "$work/boot.log"
+  cat "$jail/probe.txt" || true
+  passed=$((passed + $(grep -c '^ok' "$jail/probe.txt")))
+  failed=$((failed + $(grep -c '^FAILED' "$jail/probe.txt" || true)))
+  # The last line is there only if all of them were asked.
+  check "all services were tried" grep -q "no unit failed" "$jail/probe.txt"
+  ! grep -q '^FAILED' "$jail/probe.txt" || tail -n 60 "$jail/probe.log"
+}
+
 make_jail
 make_next_version
 install_all() { inside sh -c "apt-get install -y --no-install-recommends -o Dpkg::Options::=--force-confold /$1/*.deb"; }
@@ -94,6 +135,9 @@ check "udev rules are syntactically right" inside sh -c '
 check "user and group" inside sh -c 'id tautline && getent group tautline'
 check "logs belong to it" inside sh -c '[ "$(stat -c %U:%G /var/log/tautline)" = tautline:tautline ]'
 check "nothing is enabled by itself" inside sh -c '! ls /etc/systemd/system/*.wants/tautline* 2>/dev/null'
+
+say "services"
+try_services
 check "services can be enabled" inside systemctl enable tautline-station tautline-logger tautline-governor
 
 say "upgrade"
