@@ -27,9 +27,9 @@ void LoopStatistics::record(Duration lateness, Duration work,
   totals_.skipped_periods += skipped_periods;
   if (skipped_periods > 0) {
     ++totals_.overruns;
-    ++totals_.consecutive_overruns;
+    totals_.missed_in_a_row += skipped_periods;
   } else {
-    totals_.consecutive_overruns = 0;
+    totals_.missed_in_a_row = 0;
   }
 }
 

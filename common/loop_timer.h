@@ -54,7 +54,8 @@ class LoopStatistics {
     double work_mean{0.0};            ///< [s] in the window.
     double work_max{0.0};             ///< [s] in the window.
     double work_max_ever{0.0};        ///< [s] since start.
-    std::int64_t consecutive_overruns{0};
+    std::int64_t missed_in_a_row{0};  ///< Ticks without a cycle since the last one in time: three
+                                      ///< short overruns and one of three periods weigh the same.
   };
 
   /// One cycle: woken `lateness` after its tick, worked for `work`, then skipped whole periods (an

@@ -48,7 +48,7 @@ enum class Condition : std::uint8_t {
   kTetherElsewhere,   ///< The loaded mission begins with another contact than the tether now has.
   kMissionDone,       ///< The executor completed it.
   kMissionFailed,     ///< The executor gave up (time-out, no progress, bad contact).
-  kOverruns,          ///< Several loop overruns in a row.
+  kOverruns,          ///< The loop has missed several ticks in a row.
   kTimeInMode,        ///< The present mode has lasted longer than it may.
 };
 inline constexpr std::array<EnumName<Condition>, 16> kConditionNames{

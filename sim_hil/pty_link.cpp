@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <stdlib.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -38,6 +39,31 @@ bool makeRaw(const std::string& slave) {
   return ok;
 }
 
+/// Makes `link` a symbolic link to `slave`, atomically.
+std::error_code pointLink(const std::filesystem::path& link, const std::string& slave) {
+  std::error_code error;
+  const std::filesystem::path temporary = link.string() + ".new";
+  std::filesystem::remove(temporary, error);
+  std::filesystem::create_symlink(slave, temporary, error);
+  if (!error) std::filesystem::rename(temporary, link, error);
+  return error;
+}
+
+/// A new pseudo terminal in raw mode: its master, and the slave's name; -1 and errno if there is
+/// none.
+int openPty(std::string& slave) {
+  const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  std::array<char, 128> name{};
+  if (master < 0) return -1;
+  if (::grantpt(master) != 0 || ::unlockpt(master) != 0 ||
+      ::ptsname_r(master, name.data(), name.size()) != 0 || !makeRaw(name.data())) {
+    ::close(master);
+    return -1;
+  }
+  slave = name.data();
+  return master;
+}
+
 }  // namespace
 
 PtyLink::PtyLink(std::filesystem::path link) : link_(std::move(link)) {
@@ -46,19 +72,12 @@ PtyLink::PtyLink(std::filesystem::path link) : link_(std::move(link)) {
   if (std::filesystem::exists(status) && !std::filesystem::is_symlink(status)) {
     throw linkError(link_, "is there already and is no symbolic link", "choose another name");
   }
-  master_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  std::array<char, 128> name{};
-  if (master_ < 0 || ::grantpt(master_) != 0 || ::unlockpt(master_) != 0 ||
-      ::ptsname_r(master_, name.data(), name.size()) != 0 || !makeRaw(name.data())) {
-    const std::string reason = std::strerror(errno);
-    if (master_ >= 0) ::close(master_);
-    throw linkError(link_, "no pseudo terminal: " + reason, "is /dev/pts mounted?");
+  master_ = openPty(slave_);
+  if (master_ < 0) {
+    throw linkError(link_, "no pseudo terminal: " + std::string(std::strerror(errno)),
+                    "is /dev/pts mounted?");
   }
-  slave_ = name.data();
-  const std::filesystem::path temporary = link_.string() + ".new";
-  std::filesystem::remove(temporary, error);
-  std::filesystem::create_symlink(slave_, temporary, error);
-  if (!error) std::filesystem::rename(temporary, link_, error);
+  error = pointLink(link_, slave_);
   if (error) {
     ::close(master_);
     throw linkError(link_, "cannot make the link: " + error.message(),
@@ -78,8 +97,29 @@ std::size_t PtyLink::read(std::span<std::uint8_t> out) noexcept {
     has_client_ = true;
     return static_cast<std::size_t>(n);
   }
+  const bool had_client = has_client_;
   has_client_ = n < 0 && (errno == EAGAIN || errno == EINTR);  // EIO: the slave is closed
+  if (had_client && !has_client_) replug();
   return 0;
+}
+
+void PtyLink::replug() noexcept {
+  const int fd = ::open(slave_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (fd >= 0) {
+    ::ioctl(fd, TIOCNXCL);
+    ::close(fd);
+    return;
+  }
+  std::string slave;
+  const int master = openPty(slave);
+  if (master < 0) return;
+  if (pointLink(link_, slave)) {
+    ::close(master);
+    return;
+  }
+  ::close(master_);
+  master_ = master;
+  slave_ = slave;
 }
 
 std::size_t PtyLink::write(std::span<const std::uint8_t> bytes) noexcept {

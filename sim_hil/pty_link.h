@@ -33,10 +33,15 @@ class PtyLink {
 
   /// A client has the slave open, as of the last read().
   [[nodiscard]] bool hasClient() const noexcept { return has_client_; }
-  /// The slave's own name, e.g. "/dev/pts/3".
+  /// The slave's own name, e.g. "/dev/pts/3"; another one after a client that left it claimed.
   [[nodiscard]] const std::string& slave() const noexcept { return slave_; }
 
  private:
+  /// A client has gone. If it had claimed the terminal for itself (TIOCEXCL) and was killed, the
+  /// claim stays as long as the master is open, unlike on a cable; only root may pass it. So the
+  /// claim is taken back, or where that is not allowed a new terminal takes the old one's place.
+  void replug() noexcept;
+
   std::filesystem::path link_;
   std::string slave_;
   int master_{-1};

@@ -8,6 +8,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "app/cli/black_box_command.h"
+#include "app/cli/doctor_command.h"
 #include "app/cli/flight_command.h"
 #include "app/cli/mission_command.h"
 #include "app/cli/report_command.h"
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
   cli::addMissionCommand(app, result);
   cli::addReportCommand(app, result);
   cli::addBlackBoxCommand(app, result);
+  cli::addDoctorCommand(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -43,7 +43,7 @@ tautline::station_input_t messageOf(const StepInput& in) noexcept {
   }
   m.chunk_session = in.chunk != nullptr ? in.chunk->session : 0;
   m.chunk_sequence = in.chunk != nullptr ? in.chunk->sequence : 0;
-  m.loop_overruns = in.consecutive_overruns;
+  m.loop_overruns = in.missed_in_a_row;
 
   m.reel_time_ns = nanosecondsOf(f.reel);
   m.reel_sequence = as<std::int32_t>(f.reel.sequence);
@@ -92,7 +92,7 @@ tautline::station_input_t messageOf(const StepInput& in) noexcept {
 StepInput inputOf(const tautline::station_input_t& m) noexcept {
   StepInput in;
   in.now = timeOf(m.now_ns);
-  in.consecutive_overruns = m.loop_overruns;
+  in.missed_in_a_row = m.loop_overruns;
   if (m.has_command) {
     in.command =
         OperatorCommand{m.command_session, m.command_sequence, static_cast<Request>(m.command_verb),

@@ -16,6 +16,7 @@
 #include "app/station/emulated_machine.h"
 #include "app/station/lcm_link.h"
 #include "app/station/real_time_loop.h"
+#include "app/station/service_notifier.h"
 #include "app/station/station.h"
 #include "app/station/station_config.h"
 #include "app/station/telemetry.h"
@@ -123,13 +124,18 @@ void run(const Options& options) {
 
   telemetry.setParams("tautline-station", kVersion, effective);
 
+  ServiceNotifier service(serviceManagerFromEnvironment());
+  if (!service.error().empty())
+    fmt::print(stderr, "tautline-station: warning: {}; its watchdog hears nothing\n",
+               service.error());
+
   becomeRealTime(config);
   fmt::print("tautline-station {}: {} on {}, {:g} Hz, {}; stop with Ctrl-C\n", kVersion,
              device.name(), config.serial.device, config.loop_rate_hz,
              nameOf(config.run_mode, kRunModeNames));
   std::fflush(stdout);
 
-  const LoopParts parts{device, lcm, *station, telemetry, black_box.get()};
+  const LoopParts parts{device, lcm, *station, telemetry, black_box.get(), &service};
   const LoopStatistics::Snapshot summary =
       realTimeLoop(parts, fromSeconds(1.0 / config.loop_rate_hz), stop_requested);
   fmt::print("tautline-station: stopped after {} cycles, {} overruns, {} periods skipped\n",

@@ -44,12 +44,15 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
     }
 
     const Time done = monotonicNow();
-    statistics.record(lateness, done - in.now, grid.advance(done));
-    in.consecutive_overruns = static_cast<std::int32_t>(statistics.snapshot().consecutive_overruns);
+    const std::int64_t skipped = grid.advance(done);
+    statistics.record(lateness, done - in.now, skipped);
+    in.missed_in_a_row = static_cast<std::int32_t>(statistics.snapshot().missed_in_a_row);
+    if (parts.service != nullptr) parts.service->cycleDone(done, skipped == 0);
     if (parts.black_box != nullptr)
       parts.black_box->record(makeRecord(in, out, lateness, done - in.now));
   }
   parts.device.shutdown(monotonicNow());
+  if (parts.service != nullptr) parts.service->stopping();
   return statistics.snapshot();
 }
 

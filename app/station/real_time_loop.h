@@ -7,6 +7,7 @@
 
 #include "app/station/black_box.h"
 #include "app/station/lcm_link.h"
+#include "app/station/service_notifier.h"
 #include "app/station/station.h"
 #include "app/station/telemetry.h"
 #include "common/loop_timer.h"
@@ -19,7 +20,8 @@ struct LoopParts {
   LcmLink& lcm;
   Station& station;
   Telemetry& telemetry;
-  BlackBox* black_box;  ///< May be null.
+  BlackBox* black_box;         ///< May be null.
+  ServiceNotifier* service{};  ///< May be null.
 };
 
 /// Runs until `stop` is set, then sends the device's last words. Real-time safe after the first

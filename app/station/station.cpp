@@ -113,7 +113,7 @@ ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noex
   set.set(Condition::kMissionLoaded, waiting != nullptr);
   set.set(Condition::kTetherElsewhere,
           waiting != nullptr && !guidance_.startsWithPresentTether(*waiting));
-  set.set(Condition::kOverruns, in.consecutive_overruns >= config_.overruns_in_a_row);
+  set.set(Condition::kOverruns, in.missed_in_a_row >= config_.overruns_in_a_row);
   return set;
 }
 

@@ -34,8 +34,8 @@ struct StepInput {
   SensorFrame sensors;
   std::optional<OperatorCommand> command;
   const tautline::mission_chunk_t* chunk{
-      nullptr};  ///< A piece of a mission, or none; used during the call only.
-  std::int32_t consecutive_overruns{0};  ///< Of the loop, as of the last cycle.
+      nullptr};                     ///< A piece of a mission, or none; used during the call only.
+  std::int32_t missed_in_a_row{0};  ///< Ticks that the loop has missed, as of the last cycle.
 };
 
 /// All that a cycle says.

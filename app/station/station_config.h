@@ -80,7 +80,7 @@ struct CoreConfig {
     v.section("gate", gate);
     v.section("reel_dead_zone", reel_dead_zone);
     v.field("overruns_in_a_row", overruns_in_a_row, Range{1, 1000},
-            "this many overruns in a row end a mission");
+            "this many ticks missed in a row end a mission");
   }
 };
 

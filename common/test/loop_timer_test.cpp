@@ -59,7 +59,7 @@ TEST(LoopStatistics, CountsSinceStartAndMeasuresTheWindow) {
   EXPECT_EQ(s.cycles, 3);
   EXPECT_EQ(s.overruns, 2);
   EXPECT_EQ(s.skipped_periods, 3);
-  EXPECT_EQ(s.consecutive_overruns, 2);
+  EXPECT_EQ(s.missed_in_a_row, 3);
   EXPECT_DOUBLE_EQ(s.lateness_mean, 0.002);
   EXPECT_DOUBLE_EQ(s.lateness_max, 0.003);
   EXPECT_NEAR(s.work_mean, 41e-3 / 3, 1e-12);
@@ -69,7 +69,7 @@ TEST(LoopStatistics, CountsSinceStartAndMeasuresTheWindow) {
   s = statistics.snapshot();
   EXPECT_EQ(s.cycles, 4);
   EXPECT_EQ(s.overruns, 2);
-  EXPECT_EQ(s.consecutive_overruns, 0);
+  EXPECT_EQ(s.missed_in_a_row, 0);
   EXPECT_DOUBLE_EQ(s.work_max, 0.001);
   EXPECT_DOUBLE_EQ(s.work_max_ever, 0.025);
 }

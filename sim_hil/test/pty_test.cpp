@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -72,6 +73,41 @@ class Port {
  private:
   int fd_;
 };
+
+/// Opens the terminal, claims it for itself and dies without giving it back.
+bool claimAndDie(const fs::path& link) {
+  const int fd = ::open(link.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
+  const bool claimed = fd >= 0 && ::ioctl(fd, TIOCEXCL) == 0;
+  ::close(fd);
+  return claimed;
+}
+
+// Root may open a claimed terminal, so a child without root's rights tries it, and one with them.
+TEST(PtyLink, AClientThatWasKilledLeavesNoClaimBehind) {
+  constexpr unsigned kNobody = 65534;
+  for (const bool as_nobody : {false, true}) {
+    Folder folder;
+    const fs::path path = folder / "device";
+    const auto reopen = [&] {
+      if (as_nobody && ::geteuid() == 0) {
+        if (::chown(path.parent_path().c_str(), kNobody, kNobody) != 0 || ::setuid(kNobody) != 0)
+          ::_exit(10);
+      }
+      PtyLink link(path);
+      std::array<std::uint8_t, 16> bytes{};
+      for (int client = 0; client < 3; ++client) {
+        const int fd = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
+        if (fd < 0) ::_exit(20 + client);
+        if (link.read(bytes) != 0 || !link.hasClient()) ::_exit(30 + client);
+        ::close(fd);
+        if (!claimAndDie(path)) ::_exit(40 + client);
+        if (link.read(bytes) != 0 || link.hasClient()) ::_exit(50 + client);
+      }
+      ::_exit(0);
+    };
+    EXPECT_EXIT(reopen(), ::testing::ExitedWithCode(0), "") << "as nobody: " << as_nobody;
+  }
+}
 
 TEST(PtyLink, MakesAndRemovesItsLink) {
   const Folder folder;

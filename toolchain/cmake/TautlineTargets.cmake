@@ -17,6 +17,7 @@ target_compile_options(tautline_flags INTERFACE
   -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion
   -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast -Wcast-qual -Wformat=2 -Wimplicit-fallthrough
   -ffp-contract=off)  # same floating-point results on x86-64 and aarch64
+target_link_options(tautline_flags INTERFACE -Wl,-z,now)  # no symbol is looked up for the first time inside the loop
 if(TAUTLINE_SANITIZE)
   target_compile_options(tautline_flags INTERFACE
     -fsanitize=${TAUTLINE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -101,15 +102,21 @@ function(tautline_script_test name script)
     SKIP_RETURN_CODE 77 ENVIRONMENT "TAUTLINE_BIN=$<TARGET_FILE_DIR:tautline>;TAUTLINE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
 endfunction()
 
-# tautline_benchmark(name SOURCES … LINK …): a Google Benchmark program in build/<preset>/benchmark.
+# tautline_benchmark(name [OWN_MAIN] SOURCES … LINK …): a Google Benchmark program in build/<preset>/benchmark, or with
+# OWN_MAIN a program that measures and prints by itself.
 function(tautline_benchmark name)
   if(NOT TAUTLINE_BUILD_BENCHMARKS)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_MAIN" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/benchmark")
-  target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK} benchmark::benchmark benchmark::benchmark_main)
+  target_link_libraries(${name} PRIVATE tautline_flags ${ARG_LINK})
+  if(ARG_OWN_MAIN)
+    target_compile_definitions(${name} PRIVATE TAUTLINE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  else()
+    target_link_libraries(${name} PRIVATE benchmark::benchmark benchmark::benchmark_main)
+  endif()
 endfunction()
 
 # tautline_fuzzer(name SOURCE f.cpp CORPUS dir LINK …): with clang and TAUTLINE_BUILD_FUZZERS a libFuzzer program; always a
