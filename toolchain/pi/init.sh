@@ -84,11 +84,14 @@ get_airborne() { operator arm && operator takeoff --timeout 120; }
 fly() {
   tautline status --wait 60 >>/flight/operator.txt 2>&1 ||
     { tell "error: the station did not start: $(tail -n 1 /flight/station.txt)"; return 4; }
-  again 10 get_airborne || return 3
-  again 3 operator navigate "/opt/tautline/config/missions/$mission" --timeout "$limit_s"
-  navigated=$?
-  again 3 operator land --timeout 180 || return 1
-  return $navigated
+  for flight in 1 2 3; do
+    [ $flight = 1 ] || tell "flight $flight"
+    again 10 get_airborne || return 3
+    operator navigate "/opt/tautline/config/missions/$mission" --timeout "$limit_s"
+    navigated=$?
+    again 3 operator land --timeout 180 && [ $navigated = 0 ] && return 0
+  done
+  return 1
 }
 fly
 code=$?

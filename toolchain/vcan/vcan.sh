@@ -63,6 +63,10 @@ while kill -0 "$kernel" 2>/dev/null; do
   sleep 0.1
 done
 cat "$job/output" 2>/dev/null || true
+if [[ ! -e $job/output ]] && ! kill -0 "$kernel" 2>/dev/null; then
+  tail -n 20 "$job/console" >&2
+  unavailable "user-mode Linux does not start on this machine (ptrace forbidden?); its last words are above"
+fi
 if [[ ! -s $job/exit_code ]]; then
   tail -n 20 "$job/console" >&2
   echo "run: error: the kernel with SocketCAN did not finish (started $SECONDS s ago, limit $limit_s s); its last words are above" >&2
