@@ -190,8 +190,8 @@ bool stepAgain(const RecordedFlight& flight, TelemetrySink& sink, LcmLink* lcm, 
   FotokiteDevice device(cable.port(), config.fotokite);
   Telemetry telemetry(sink, RunMode::kSim, Duration::zero(),
                       fromSeconds(1.0 / config.telemetry_rate_hz));
-  const auto path = std::filesystem::path("/dev/shm") /
-                    ("tautline_cycle_benchmark_" + std::to_string(getpid()));
+  const auto path =
+      std::filesystem::path("/dev/shm") / ("tautline_cycle_benchmark_" + std::to_string(getpid()));
   BlackBox black_box(path);
   SensorFrame frame;
   bool same = true;
