@@ -44,7 +44,7 @@ WireBytes cobsOf(const TautlineFrame& frame) noexcept {
 }
 
 WireBytes slcanOf(const TautlineFrame& frame) noexcept {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  static constexpr std::string_view kDigits = "0123456789ABCDEF";
   WireBytes out;
   const auto hex = [&out](unsigned value, unsigned digits) {
     while (digits-- > 0) out.put(static_cast<unsigned char>(kDigits[value >> (4 * digits) & 0xFU]));
