@@ -10,6 +10,7 @@ namespace tautline {
 namespace {
 
 constexpr std::size_t kColumns = 22;
+constexpr std::size_t kColumnsWithoutContact = 19;
 constexpr std::string_view kBlanks = " \t\r";
 
 /// "20180205174014"; nothing for what is no date.
@@ -70,13 +71,14 @@ ParsedFlightLogRow parseFlightLogRow(std::string_view line) noexcept {
     }
     ++count;
   }
-  if (count != kColumns) return fail(FlightLogError::kFieldCount);
+  if (count != kColumns && count != kColumnsWithoutContact)
+    return fail(FlightLogError::kFieldCount);
   FlightLogRow& row = out.row;
   row.p_WD = {value[4], value[5], value[6]};
   row.length = value[10];
   row.elevation = value[11];
   row.azimuth = value[12];
-  row.p_WA = {value[13], value[14], value[15]};
+  if (count == kColumns) row.p_WA = {value[13], value[14], value[15]};
   bool good = kLogLengthRange.contains(row.length) && kLogElevationRange.contains(row.elevation) &&
               kLogAzimuthRange.contains(row.azimuth);
   for (int i = 0; i < 3; ++i)

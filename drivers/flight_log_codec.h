@@ -2,7 +2,8 @@
 
 /// @file
 /// One row of the text logs that the published flights of the Fotokite left: 22 columns separated
-/// by blanks. Pure, no I/O. Axes are Tautline's but for the azimuth (docs/devices.md).
+/// by blanks, or 19 in the earlier ones, which have no contact. Pure, no I/O. Axes are Tautline's
+/// but for the azimuth (docs/devices.md).
 ///
 /// Everything here: real-time safe: no allocation, no locks, no exceptions.
 
@@ -21,10 +22,11 @@ namespace tautline {
 struct FlightLogRow {
   std::int64_t second{0};  ///< Column 1, date and time, as seconds since 1970 without time zone.
   Eigen::Vector3d p_WD{Eigen::Vector3d::Zero()};  ///< Columns 5 to 7: where its program was [m].
-  double length{0.0};                             ///< Column 11, beyond the contact [m].
-  double elevation{0.0};                          ///< Column 12 [rad], up positive.
-  double azimuth{0.0};                            ///< Column 13 [rad], phi - pi/2.
-  Eigen::Vector3d p_WA{Eigen::Vector3d::Zero()};  ///< Columns 14 to 16: contact, or the reel [m].
+  double length{0.0};     ///< Column 11, all that is out, by the machine's nominal scale [m].
+  double elevation{0.0};  ///< Column 12 [rad], up positive.
+  double azimuth{0.0};    ///< Column 13 [rad], phi - pi/2.
+  Eigen::Vector3d p_WA{
+      Eigen::Vector3d::Zero()};  ///< Columns 14 to 16 of 22: contact, or the reel [m].
 };
 
 enum class FlightLogError : std::uint8_t { kNone, kFieldCount, kNotANumber, kOutOfRange };

@@ -1,5 +1,6 @@
 #include "app/station/recording.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <numbers>
@@ -51,10 +52,13 @@ std::vector<FlightLogRow> readRows(const std::filesystem::path& file, std::int64
   return rows;
 }
 
+/// The log has the last contact only; the tether along those before it is what its program left of
+/// the length for the drone, never less than the straight line.
 Anchor anchorOf(const FlightLogRow& row) {
   const double distance = row.p_WA.norm();
   if (distance < kAtReel) return {};
-  return {.p_WA = row.p_WA, .L_static = distance, .contact_count = 1};
+  const double along = row.length - (row.p_WD - row.p_WA).norm();
+  return {.p_WA = row.p_WA, .L_static = std::max(distance, along), .contact_count = 1};
 }
 
 /// Rows of one second are spread over it evenly: their stamps have whole seconds. A value that
@@ -74,7 +78,7 @@ Recording readTextLog(const std::filesystem::path& file) {
       const Time now =
           Time{} + std::chrono::seconds(row.second - rows.front().second + 1) + fromSeconds(part);
       const Anchor anchor = anchorOf(row);
-      const double length = row.length + anchor.L_static;
+      const double length = row.length;
       const double phi = wrapAngle(row.azimuth + std::numbers::pi / 2.0);
       const bool first = k == i;
       if (first || frame.reel.value.length != length) {
@@ -120,7 +124,7 @@ Recording readRecording(const std::filesystem::path& file) {
   if (out.cycles.empty()) {
     throw InputError({.file = file.string(),
                       .problem = is_lcm ? "has no STATION_INPUT messages of this version"
-                                        : "has no row of a flight log (22 numbers)",
+                                        : "has no row of a flight log (22 or 19 numbers)",
                       .remedy = "record all channels with lcm-logger, or name a flight log"});
   }
   return out;

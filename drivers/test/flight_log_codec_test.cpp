@@ -36,6 +36,15 @@ TEST(FlightLogCodec, ReadsTheColumnsThatAreUsed) {
   EXPECT_EQ(parseFlightLogRow(kRow + "\r").error, FlightLogError::kNone);
 }
 
+TEST(FlightLogCodec, ReadsTheEarlierRowsWithoutContact) {
+  const ParsedFlightLogRow parsed = parseFlightLogRow(
+      "20180130201920 1 1 1 0.5 0.6 0.7 1.7 0.6 -0.8 1.6 0.99 -0.72 6.9e-310 6.9e-310 6.9e-310 0.4 "
+      "1 0");
+  ASSERT_EQ(parsed.error, FlightLogError::kNone);
+  EXPECT_EQ(parsed.row.length, 1.6);
+  EXPECT_TRUE(parsed.row.p_WA.isZero());
+}
+
 TEST(FlightLogCodec, NamesWhatIsWrong) {
   EXPECT_EQ(parseFlightLogRow("").error, FlightLogError::kFieldCount);
   EXPECT_EQ(parseFlightLogRow(kRow + "1").error, FlightLogError::kFieldCount);
