@@ -172,7 +172,7 @@ void addReplay(CLI::App& app, Options& options, ExitCode& result) {
       "replay",
       "Step a recorded flight again; exit code 0 only if every command is the same. A text log of "
       "the published flights goes through the estimator");
-  verb->add_option("log", options.log, "LCM log, or text log of 22 columns")->required();
+  verb->add_option("log", options.log, "LCM log, or text log of the published flights")->required();
   verb->add_option("--speed", options.speed,
                    "times real time, with a line for each second; 0: as fast as it goes")
       ->check(CLI::Range(0.0, 1000.0))

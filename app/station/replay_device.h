@@ -18,7 +18,7 @@ struct ReplayConfig {
 
   template <class Visitor>
   void fields(Visitor& v) {
-    v.field("file", file, "LCM log with STATION_INPUT, or a text log of 22 columns");
+    v.field("file", file, "LCM log with STATION_INPUT, or a text log of the published flights");
     v.field("speed", speed, Range{0.01, 1000},
             "times real time; at other speeds than 1 all motion looks that much faster");
   }
