@@ -34,6 +34,15 @@ struct Sample {
   T value{};
 };
 
+/// Makes `value` the newest sample. Real-time safe: no allocation, no locks, no exceptions.
+template <class T>
+void update(Sample<T>& sample, Time time, const T& value) noexcept {
+  sample.time = time;
+  ++sample.sequence;
+  sample.valid = true;
+  sample.value = value;
+}
+
 /// Tether reel. `length` is total tether out, reel to drone, by the driver's nominal calibration.
 struct ReelReading {
   double counts{0.0};  ///< Raw encoder counts since the reel's power-on.
@@ -81,7 +90,38 @@ struct GroundReading {
   double battery_voltage{0};  ///< [V]
 };
 
-/// Counters of a device's link, for telemetry and arming checks.
+/// What is wrong with a link that is there, as far as the driver can tell. Each has its text and
+/// its remedy in app/station/events.h.
+enum class LinkFault : std::uint8_t {
+  kNone,
+  kSilent,            ///< Connected, and nothing is heard.
+  kGarbage,           ///< Bytes arrive that mean nothing: wrong baud rate, damaged line.
+  kOtherProtocol,     ///< A device that speaks something else.
+  kUnreliable,        ///< Half of the messages or more fail their check.
+  kSensorRate,        ///< A sensor sends at another rate than agreed.
+  kAnotherStation,    ///< Someone else commands on this bus.
+  kInterfaceMissing,  ///< The network interface of the bus is gone.
+  kInterfaceDown,     ///< It is there and switched off.
+  kBusOff,            ///< The controller has left the bus after too many errors.
+  kBusErrors,         ///< The controller sees errors: wrong bit rate, wiring, termination.
+  kNoAcknowledge,     ///< Nobody acknowledges what the station sends: it is alone on the bus.
+};
+inline constexpr std::array<EnumName<LinkFault>, 12> kLinkFaultNames{
+    {{LinkFault::kNone, "none"},
+     {LinkFault::kSilent, "silent"},
+     {LinkFault::kGarbage, "garbage"},
+     {LinkFault::kOtherProtocol, "other protocol"},
+     {LinkFault::kUnreliable, "unreliable"},
+     {LinkFault::kSensorRate, "sensor rate"},
+     {LinkFault::kAnotherStation, "another station"},
+     {LinkFault::kInterfaceMissing, "interface missing"},
+     {LinkFault::kInterfaceDown, "interface down"},
+     {LinkFault::kBusOff, "bus-off"},
+     {LinkFault::kBusErrors, "bus errors"},
+     {LinkFault::kNoAcknowledge, "no acknowledge"}}};
+
+/// Counters of a device's link, for telemetry and arming checks. A line is a message of the
+/// device's protocol, of text or not.
 struct LinkStatus {
   bool connected{false};
   std::uint64_t bytes_in{0};
@@ -90,6 +130,17 @@ struct LinkStatus {
   std::uint32_t lines_bad{0};      ///< Cut, garbled, out of range or unknown.
   std::uint32_t bytes_dropped{0};  ///< Output that the port could not take.
   std::uint32_t reconnects{0};
+
+  LinkFault fault{LinkFault::kNone};
+  /// @name End-to-end checks, where the protocol has them; none of these messages is used
+  /// @{
+  std::uint32_t repeated{0};        ///< The same alive counter again.
+  std::uint32_t wrong_sequence{0};  ///< Messages missing before it, or out of order.
+  std::uint32_t check_errors{0};    ///< Wrong CRC, size or value.
+  std::uint32_t timeouts{0};        ///< Times that a message was missing for three periods.
+  /// @}
+  std::uint32_t bus_errors{0};  ///< Error frames of a CAN controller.
+  std::uint32_t bus_off{0};     ///< Times that it went off the bus.
 };
 
 /// Everything the core sees of the hardware in one cycle.

@@ -17,9 +17,9 @@ using R = Request;
 constexpr std::uint16_t kAirborne = in({M::kTakeoff, M::kHold, M::kAuto, M::kLand});
 constexpr std::uint16_t kEverywhere = 0xFFFF;
 constexpr ConditionSet kBlind{C::kReelStale, C::kAnglesStale, C::kLocalizationLost};
-constexpr ConditionSet kNotReady{C::kReelStale,    C::kAnglesStale,   C::kAttitudeStale,
-                                 C::kVehicleStale, C::kLinkLost,      C::kLocalizationLost,
-                                 C::kVehicleFault, C::kVehicleFlying, C::kOverruns};
+constexpr ConditionSet kNotReady{
+    C::kReelStale,        C::kAnglesStale,  C::kAttitudeStale, C::kVehicleStale, C::kLinkLost,
+    C::kLocalizationLost, C::kVehicleFault, C::kVehicleFlying, C::kOverruns,     C::kLinkFault};
 
 // clang-format off
 constexpr std::array kTransitions{

@@ -50,8 +50,9 @@ enum class Condition : std::uint8_t {
   kMissionFailed,     ///< The executor gave up (time-out, no progress, bad contact).
   kOverruns,          ///< The loop has missed several ticks in a row.
   kTimeInMode,        ///< The present mode has lasted longer than it may.
+  kLinkFault,         ///< The link is there and something is wrong with it.
 };
-inline constexpr std::array<EnumName<Condition>, 16> kConditionNames{
+inline constexpr std::array<EnumName<Condition>, 17> kConditionNames{
     {{Condition::kReelStale, "REEL_STALE"},
      {Condition::kAnglesStale, "ANGLES_STALE"},
      {Condition::kAttitudeStale, "ATTITUDE_STALE"},
@@ -67,7 +68,8 @@ inline constexpr std::array<EnumName<Condition>, 16> kConditionNames{
      {Condition::kMissionDone, "MISSION_DONE"},
      {Condition::kMissionFailed, "MISSION_FAILED"},
      {Condition::kOverruns, "OVERRUNS"},
-     {Condition::kTimeInMode, "TIME_IN_MODE"}}};
+     {Condition::kTimeInMode, "TIME_IN_MODE"},
+     {Condition::kLinkFault, "LINK_FAULT"}}};
 
 /// A set of conditions. Real-time safe: no allocation, no locks, no exceptions.
 class ConditionSet {

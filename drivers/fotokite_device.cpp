@@ -52,14 +52,6 @@ VehiclePhase phaseOf(std::uint8_t flight_mode) noexcept {
   return VehiclePhase::kUnknown;
 }
 
-template <class T>
-void update(Sample<T>& sample, Time now, const T& value) noexcept {
-  sample.time = now;
-  ++sample.sequence;
-  sample.valid = true;
-  sample.value = value;
-}
-
 // A line that arrived whole and says something impossible: the sensor, not the link, is at fault.
 void invalidate(LineKind kind, SensorFrame& frame) noexcept {
   switch (kind) {
@@ -108,6 +100,7 @@ void FotokiteDevice::read(Time now, SensorFrame& frame) noexcept {
   for (int i = 0; i < kReadsPerCycle; ++i) {
     const ReadResult got = port_.read(buffer);
     if (got.count == 0) break;
+    text_bytes_ += countText(std::span(buffer.data(), got.count));
     assembler_.push(std::span(buffer.data(), got.count),
                     [&](std::string_view text, LineError error) {
                       if (error == LineError::kNone) {
@@ -117,6 +110,11 @@ void FotokiteDevice::read(Time now, SensorFrame& frame) noexcept {
                       }
                     });
   }
+  fault_ = monitor_.update(now, {.connected = port_.connected(),
+                                 .bytes = port_.counters().bytes_in,
+                                 .text_bytes = text_bytes_,
+                                 .good = lines_.good(),
+                                 .bad = lines_.bad()});
   frame.link = status();
 }
 
@@ -283,7 +281,8 @@ LinkStatus FotokiteDevice::status() const noexcept {
           .lines_ok = lines_.good(),
           .lines_bad = lines_.bad(),
           .bytes_dropped = port.bytes_dropped,
-          .reconnects = port.reconnects};
+          .reconnects = port.reconnects,
+          .fault = fault_};
 }
 
 }  // namespace tautline

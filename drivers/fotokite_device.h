@@ -17,6 +17,7 @@
 #include "drivers/device.h"
 #include "drivers/fotokite_codec.h"
 #include "drivers/fotokite_protocol.h"
+#include "drivers/link_monitor.h"
 #include "drivers/pace.h"
 
 namespace tautline {
@@ -61,6 +62,8 @@ class FotokiteDevice final : public Device {
   /// In another ground mode, or silent, for this long: the start sequence is sent again.
   static constexpr Duration kRemoteControlTimeout = std::chrono::seconds(2);
   static constexpr Duration kSilenceTimeout = std::chrono::seconds(5);
+  /// Telemetry comes once a second at least.
+  static constexpr Duration kMonitorWindow = std::chrono::seconds(3);
   /// An unchanged gimbal rate is repeated.
   static constexpr Duration kGimbalPeriod = std::chrono::milliseconds(500);
 
@@ -120,6 +123,9 @@ class FotokiteDevice final : public Device {
   Duration command_period_;
 
   fotokite::LineAssembler assembler_;
+  std::uint64_t text_bytes_{0};
+  LinkMonitor monitor_{kMonitorWindow};
+  LinkFault fault_{LinkFault::kNone};
   fotokite::LineCounters lines_;
 
   bool was_connected_{false};

@@ -9,7 +9,6 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -166,19 +165,10 @@ SerialStatus SerialPort::tryOpen() noexcept {
 void SerialPort::poll(Time now) noexcept {
   if (connected()) {
     flush();
-    next_attempt_.reset();
-    retry_ = kFirstRetry;
+    back_off_.reset();
     return;
   }
-  if (config_.device.empty()) return;
-  if (!next_attempt_) {
-    next_attempt_ = now + retry_;
-    return;
-  }
-  if (now < *next_attempt_) return;
-  status_ = tryOpen();
-  retry_ = std::min(2 * retry_, kSlowestRetry);
-  next_attempt_ = now + retry_;
+  if (!config_.device.empty() && back_off_.due(now)) status_ = tryOpen();
 }
 
 ReadResult SerialPort::read(std::span<std::uint8_t> buffer) noexcept {

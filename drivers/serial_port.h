@@ -6,10 +6,10 @@
 /// when it comes back.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "common/fields.h"
+#include "drivers/back_off.h"
 #include "drivers/byte_port.h"
 #include "drivers/output_queue.h"
 
@@ -56,9 +56,6 @@ struct SerialOpenResult {
 /// exceptions.
 class SerialPort final : public BytePort {
  public:
-  static constexpr Duration kFirstRetry = std::chrono::milliseconds(100);
-  static constexpr Duration kSlowestRetry = std::chrono::seconds(2);
-
   explicit SerialPort(SerialConfig config);
   ~SerialPort() override;
 
@@ -93,8 +90,7 @@ class SerialPort final : public BytePort {
   int error_{0};        ///< errno of the last failed attempt.
   bool was_connected_{false};
   SerialStatus status_{SerialStatus::kNoSuchDevice};
-  std::optional<Time> next_attempt_;
-  Duration retry_{kFirstRetry};
+  BackOff back_off_;
 };
 
 }  // namespace tautline

@@ -1,9 +1,11 @@
 /// @file
-/// `tautline-sim`: the simulated drone, reel and tether behind the real device's wire protocol.
+/// `tautline-sim`: the simulated drone, reel and tether behind the wire protocol of a real device.
 
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -14,11 +16,13 @@
 #include "common/mission/scene.h"
 #include "common/toml/config_file.h"
 #include "lcmtypes/channels.h"
+#include "sim_hil/can_link.h"
 #include "sim_hil/pty_link.h"
 #include "sim_hil/real_time_server.h"
 #include "sim_hil/sim_config.h"
 #include "sim_hil/simulator.h"
 #include "sim_hil/truth_publisher.h"
+#include "sim_hil/tty_link.h"
 
 namespace tautline::sim {
 namespace {
@@ -28,7 +32,10 @@ volatile std::sig_atomic_t stop_requested = 0;
 void onSignal(int /*signal*/) { stop_requested = 1; }
 
 struct Options {
+  std::string device;
   std::string pty;
+  std::string can;
+  std::string slcan;
   std::string scene;
   std::string config;
   std::uint64_t seed{1};
@@ -44,6 +51,13 @@ void addOptions(CLI::App& app, Options& o) {
   app.set_version_flag("--version", TAUTLINE_VERSION);
   app.add_option("--pty", o.pty,
                  "make this a link to the device's terminal, e.g. /tmp/tautline-fotokite");
+  app.add_option("--device", o.device,
+                 "what is served on --pty: fotokite (default) or tautline-serial")
+      ->check(CLI::IsMember({"fotokite", "tautline-serial"}));
+  app.add_option("--can", o.can, "serve the Tautline bus on this CAN interface, e.g. vcan0");
+  app.add_option("--slcan", o.slcan,
+                 "serve the Tautline bus as a CAN adapter with SLCAN text: on this serial line if "
+                 "there is one, on a terminal with this link otherwise");
   app.add_option("--scene", o.scene,
                  "*.scene.toml: room, obstacles, reel, start (default: an open floor)");
   app.add_option("--config", o.config, "properties of the machine, see config/sim.toml");
@@ -59,6 +73,10 @@ void addOptions(CLI::App& app, Options& o) {
                "print every key with its value and its meaning, then stop");
 }
 
+const char* protocolOf(SimDevice device) {
+  return device == SimDevice::kFotokite ? "Fotokite protocol" : "Tautline bus";
+}
+
 /// Nothing in it but a floor 0.3 m below the reel outlet.
 Scene openFloor() {
   Scene scene;
@@ -67,9 +85,41 @@ Scene openFloor() {
   return scene;
 }
 
+/// What is served where; exactly one place.
+void chooseDevice(const Options& o, SimConfig& config) {
+  const int places = (o.pty.empty() ? 0 : 1) + (o.can.empty() ? 0 : 1) + (o.slcan.empty() ? 0 : 1);
+  if (places > 1 || (!o.device.empty() && o.pty.empty() && places > 0)) {
+    throw InputError({.key = "--pty, --can, --slcan",
+                      .problem = "more than one place to serve",
+                      .remedy = "choose one; --device goes with --pty"},
+                     ExitCode::kUsage);
+  }
+  if (o.device == "fotokite") config.device = SimDevice::kFotokite;
+  if (o.device == "tautline-serial") config.device = SimDevice::kTautlineSerial;
+  if (!o.can.empty()) config.device = SimDevice::kTautlineCan;
+  if (!o.slcan.empty()) config.device = SimDevice::kTautlineSlcan;
+}
+
+std::unique_ptr<ByteLink> openLink(const Options& o, SimDevice device) {
+  if (!o.can.empty()) return std::make_unique<CanLink>(o.can);
+  if (!o.slcan.empty() && std::filesystem::is_character_file(o.slcan) &&
+      !std::filesystem::is_symlink(o.slcan))
+    return std::make_unique<TtyLink>(o.slcan);
+  const std::string& link = o.slcan.empty() ? o.pty : o.slcan;
+  if (link.empty() || device == SimDevice::kTautlineCan) {
+    throw InputError(
+        {.key = "--pty",
+         .problem = "missing",
+         .remedy = "say where to serve, e.g. --pty /tmp/tautline-fotokite or --can vcan0"},
+        ExitCode::kUsage);
+  }
+  return std::make_unique<PtyLink>(link);
+}
+
 int run(const Options& o) {
   SimConfig config = o.config.empty() ? SimConfig{} : loadConfig<SimConfig>(o.config);
-  if (o.rate_hz > 0.0) config.fotokite.forced_rate = o.rate_hz;
+  chooseDevice(o, config);
+  if (o.rate_hz > 0.0) config.fotokite.forced_rate = config.tautline.sensor_rate = o.rate_hz;
   const Scene scene = o.scene.empty() ? openFloor() : sceneInWorld(readScene(o.scene));
   const std::string effective = dumpConfig(config);
   if (o.print_config) {
@@ -81,29 +131,18 @@ int run(const Options& o) {
     std::puts("configuration is right");
     return static_cast<int>(ExitCode::kOk);
   }
-  if (o.pty.empty()) {
-    throw InputError({.file = {},
-                      .line = 0,
-                      .key = "--pty",
-                      .problem = "missing",
-                      .allowed = {},
-                      .remedy = "name the terminal to make, e.g. --pty /tmp/tautline-fotokite"},
-                     ExitCode::kUsage);
-  }
-  PtyLink pty(o.pty);
+  const std::unique_ptr<ByteLink> link = openLink(o, config.device);
   TruthPublisher publisher(o.no_lcm ? std::string() : o.lcm_url, effective);
   if (!publisher.warning().empty()) {
     std::fprintf(stderr, "tautline-sim: warning: %s\n", publisher.warning().c_str());
   }
-  std::printf(
-      "tautline-sim %s: serving Fotokite protocol on %s (%s), scene \"%s\", seed %llu; stop with "
-      "Ctrl-C\n",
-      TAUTLINE_VERSION, o.pty.c_str(), pty.slave().c_str(), scene.name.c_str(),
-      static_cast<unsigned long long>(o.seed));
+  std::printf("tautline-sim %s: serving %s on %s (%s), scene \"%s\", seed %llu; stop with Ctrl-C\n",
+              TAUTLINE_VERSION, protocolOf(config.device), (o.pty + o.can + o.slcan).c_str(),
+              link->name().c_str(), scene.name.c_str(), static_cast<unsigned long long>(o.seed));
   std::fflush(stdout);
 
   const ServerSummary summary =
-      serve(simulator, pty, publisher, fromSeconds(o.duration_s), stop_requested);
+      serve(simulator, *link, publisher, fromSeconds(o.duration_s), stop_requested);
   const Truth& truth = simulator.truth();
   std::printf("tautline-sim: stopped after %.1f s, %u client(s)%s%s", toSeconds(summary.served),
               summary.clients, truth.crashed ? ", crashed: " : "",
@@ -120,8 +159,11 @@ int run(const Options& o) {
 
 int main(int argc, char** argv) {
   using namespace tautline;
-  CLI::App app{"Simulated drone, reel and tether behind the Fotokite ground station's protocol",
-               "tautline-sim"};
+  CLI::App app{
+      "Simulated drone, reel and tether behind the Fotokite ground station's protocol or the "
+      "Tautline "
+      "bus",
+      "tautline-sim"};
   sim::Options options;
   sim::addOptions(app, options);
   std::signal(SIGTERM, sim::onSignal);

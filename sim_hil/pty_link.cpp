@@ -20,7 +20,7 @@ namespace {
 InputError linkError(const std::filesystem::path& link, std::string problem, std::string remedy) {
   return InputError({.file = {},
                      .line = 0,
-                     .key = "--pty " + link.string(),
+                     .key = link.string(),
                      .problem = std::move(problem),
                      .allowed = {},
                      .remedy = std::move(remedy)},

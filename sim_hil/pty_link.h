@@ -10,9 +10,11 @@
 #include <span>
 #include <string>
 
+#include "sim_hil/byte_link.h"
+
 namespace tautline::sim {
 
-class PtyLink {
+class PtyLink final : public ByteLink {
  public:
   /// Opens a pty in raw mode and makes `link` a symbolic link to its slave, atomically; an old link
   /// is replaced. Throws InputError if `link` is something else than a link, or cannot be made. Not
@@ -20,19 +22,12 @@ class PtyLink {
   explicit PtyLink(std::filesystem::path link);
 
   /// Removes the link if it still is ours.
-  ~PtyLink();
-  PtyLink(const PtyLink&) = delete;
-  PtyLink& operator=(const PtyLink&) = delete;
+  ~PtyLink() override;
 
-  /// Bytes from the client, 0 if there are none. Never blocks.
-  [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept;
-
-  /// Returns how many bytes the terminal took: less than all if the client does not read, all of
-  /// them, into nowhere, if there is no client. Never blocks.
-  [[nodiscard]] std::size_t write(std::span<const std::uint8_t> bytes) noexcept;
-
-  /// A client has the slave open, as of the last read().
-  [[nodiscard]] bool hasClient() const noexcept { return has_client_; }
+  [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept override;
+  [[nodiscard]] std::size_t write(std::span<const std::uint8_t> bytes) noexcept override;
+  [[nodiscard]] bool hasClient() const noexcept override { return has_client_; }
+  [[nodiscard]] std::string name() const override { return slave_; }
   /// The slave's own name, e.g. "/dev/pts/3"; another one after a client that left it claimed.
   [[nodiscard]] const std::string& slave() const noexcept { return slave_; }
 

@@ -23,12 +23,12 @@ constexpr Duration kParamsPeriod = seconds(10);
 /// Telemetry that the terminal has not taken yet.
 class Outbox {
  public:
-  void flush(Simulator& simulator, PtyLink& pty) noexcept {
+  void flush(Simulator& simulator, ByteLink& link) noexcept {
     if (begin_ == end_) {
       begin_ = 0;
       end_ = simulator.transmit(buffer_);
     }
-    begin_ += pty.write(std::span(buffer_).subspan(begin_, end_ - begin_));
+    begin_ += link.write(std::span(buffer_).subspan(begin_, end_ - begin_));
   }
 
  private:
@@ -39,7 +39,7 @@ class Outbox {
 
 }  // namespace
 
-ServerSummary serve(Simulator& simulator, PtyLink& pty, TruthPublisher& publisher,
+ServerSummary serve(Simulator& simulator, ByteLink& link, TruthPublisher& publisher,
                     Duration duration, const volatile std::sig_atomic_t& stop) {
   ServerSummary summary;
   std::array<std::uint8_t, 4096> input{};
@@ -52,19 +52,19 @@ ServerSummary serve(Simulator& simulator, PtyLink& pty, TruthPublisher& publishe
   bool had_client = false;
   while (stop == 0) {
     const Time now = monotonicNow();
-    for (std::size_t n = pty.read(input); n > 0; n = pty.read(input)) {
+    for (std::size_t n = link.read(input); n > 0; n = link.read(input)) {
       simulator.receive(std::span(input).first(n));
       if (n < input.size()) break;
     }
-    if (pty.hasClient() && !had_client) ++summary.clients;
-    had_client = pty.hasClient();
+    if (link.hasClient() && !had_client) ++summary.clients;
+    had_client = link.hasClient();
 
     const Time wanted = Time{} + (now - start) - summary.time_lost;
     if (const Duration behind = wanted - simulator.now(); behind > kMaxCatchUp) {
       summary.time_lost += behind - kMaxCatchUp;
     }
     simulator.advanceTo(Time{} + (now - start) - summary.time_lost);
-    outbox.flush(simulator, pty);
+    outbox.flush(simulator, link);
 
     const std::int64_t utime = toMicroseconds(now + unix_offset);
     if (now >= next_truth) {

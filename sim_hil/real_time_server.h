@@ -1,13 +1,13 @@
 #pragma once
 
 /// @file
-/// Runs a Simulator on the wall clock and connects it with a pty: tautline-sim's loop.
+/// Runs a Simulator on the wall clock and connects it with its link: tautline-sim's loop.
 
 #include <csignal>
 #include <cstdint>
 
 #include "common/time.h"
-#include "sim_hil/pty_link.h"
+#include "sim_hil/byte_link.h"
 #include "sim_hil/simulator.h"
 #include "sim_hil/truth_publisher.h"
 
@@ -16,13 +16,13 @@ namespace tautline::sim {
 struct ServerSummary {
   Duration served{};         ///< Simulated time.
   Duration time_lost{};      ///< Wall time that the simulation could not follow and left out.
-  std::uint32_t clients{0};  ///< Times that a client opened the terminal.
+  std::uint32_t clients{0};  ///< Times that a client came.
 };
 
 /// Serves until `stop` is set or `duration` has been simulated (zero: no end). Wakes up on an
 /// absolute grid; if the machine cannot follow, it catches up by at most 100 ms and leaves out the
 /// rest.
-[[nodiscard]] ServerSummary serve(Simulator& simulator, PtyLink& pty, TruthPublisher& publisher,
+[[nodiscard]] ServerSummary serve(Simulator& simulator, ByteLink& link, TruthPublisher& publisher,
                                   Duration duration, const volatile std::sig_atomic_t& stop);
 
 }  // namespace tautline::sim

@@ -18,6 +18,10 @@ void Reel::command(double counts_per_second) noexcept {
   commanded_ = rate * metresPerCount();
 }
 
+void Reel::drive(double metres_per_second) noexcept {
+  commanded_ = std::isnan(metres_per_second) ? 0.0 : metres_per_second * config_.scale;
+}
+
 void Reel::step(double h, double tension) noexcept {
   constexpr double kSlipSpeed = 0.5;  // of a drive that gives way, per newton too much [m/s/N]
   const double wanted = locked_ ? 0.0 : commanded_;

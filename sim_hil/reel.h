@@ -45,6 +45,8 @@ class Reel {
   /// Sets the commanded rate [counts/s]; NaN counts as 0, larger ones are cut to the device's
   /// limit.
   void command(double counts_per_second) noexcept;
+  /// Sets the commanded rate of a reel without dead zone [m/s nominal]; NaN counts as 0.
+  void drive(double metres_per_second) noexcept;
   /// A locked reel does not follow commands; it still slips above the slip tension.
   void lock(bool locked) noexcept { locked_ = locked; }
 

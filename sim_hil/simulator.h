@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The simulated machine behind its wire protocol: plant + Fotokite ground-station emulator on one
-/// virtual clock. Used in lock-step by the bench and in real time by tautline-sim.
+/// The simulated machine behind its wire protocol: plant + emulated devices on one virtual clock.
+/// Used in lock-step by the bench and in real time by tautline-sim.
 ///
 ///     Simulator sim(config, sceneInWorld(scene), seed);
 ///     sim.receive(bytes_from_station);

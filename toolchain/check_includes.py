@@ -17,7 +17,7 @@ MAY_INCLUDE = {
     "estimation": ["common"],
     "control": ["common"],
     "planning_offline": ["common"],
-    "sim_hil": ["common", "lcmtypes", "drivers/fotokite_protocol.h"],
+    "sim_hil": ["common", "lcmtypes", "drivers/fotokite_protocol.h", "drivers/tautline_protocol.h"],
     "app": ["common", "lcmtypes", "drivers", "estimation", "control"],
     "app/bench": PROJECT,
 }

@@ -1,6 +1,8 @@
 #include "app/bench/lockstep.h"
 
 #include <array>
+#include <memory>
+#include <string>
 
 #include <tautline/operator_command_t.hpp>
 #include <tautline/sim_truth_t.hpp>
@@ -9,6 +11,9 @@
 #include "app/version.h"
 #include "common/error.h"
 #include "common/toml/config_file.h"
+#include "drivers/cobs_port.h"
+#include "drivers/fotokite_device.h"
+#include "drivers/tautline_device.h"
 #include "lcmtypes/channels.h"
 
 namespace tautline::bench {
@@ -31,14 +36,43 @@ StationConfig forBench(const LockstepConfig& config) {
   return station;
 }
 
+sim::SimConfig simOf(const LockstepConfig& config) {
+  sim::SimConfig sim = config.sim;
+  sim.device = config.station.device == DeviceKind::kFotokite ? sim::SimDevice::kFotokite
+                                                              : sim::SimDevice::kTautlineSerial;
+  return sim;
+}
+
+/// Null for a device that has no bus.
+std::unique_ptr<FramePort> makeFrames(DeviceKind kind, BytePort& port) {
+  switch (kind) {
+    case DeviceKind::kFotokite:
+      return nullptr;
+    case DeviceKind::kTautlineSerial:
+      return std::make_unique<CobsPort>(port);
+    case DeviceKind::kTautlineCan:
+    case DeviceKind::kReplay:
+      break;
+  }
+  throw InputError({.key = "device",
+                    .problem = std::string(nameOf(kind, kDeviceKindNames)) + " has no lock-step",
+                    .allowed = "fotokite, tautline-serial"});
+}
+
+std::unique_ptr<Device> makeDevice(const StationConfig& config, BytePort& port, FramePort* frames) {
+  if (frames == nullptr) return std::make_unique<FotokiteDevice>(port, config.fotokite);
+  return std::make_unique<TautlineDevice>(*frames, config.tautline, "tautline-serial");
+}
+
 }  // namespace
 
 Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
     : config_(forBench(config)),
       period_(fromSeconds(1.0 / config_.loop_rate_hz)),
-      simulator_(config.sim, config.world, config.seed),
+      simulator_(simOf(config), config.world, config.seed),
       port_(simulator_),
-      device_(port_, config_.fotokite),
+      frames_(makeFrames(config_.device, port_)),
+      device_(makeDevice(config_, port_, frames_.get())),
       station_(config_.core),
       sink_(sink) {
   if (sink_ == nullptr) return;
@@ -53,11 +87,11 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
   now_ += period_;
   simulator_.advanceTo(now_);
   input_.now = now_;
-  device_.read(now_, input_.sensors);
+  device_->read(now_, input_.sensors);
   input_.command = command;
   input_.chunk = chunk;
   const StepOutput& out = station_.step(input_);
-  device_.write(now_, out.command);
+  device_->write(now_, out.command);
   output_ = &out;
   statistics_.record(Duration::zero(), Duration::zero(), 0);
   if (telemetry_) {

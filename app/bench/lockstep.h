@@ -2,7 +2,8 @@
 
 /// @file
 /// The station's core, its real driver and the simulated machine in one process on one virtual
-/// clock: the lock-step rung of the bench. Faster than real time; the same seed gives the same log,
+/// clock: the lock-step rung of the bench, with a Fotokite or with the Tautline bus over its serial
+/// wire. Faster than real time; the same seed gives the same log,
 /// byte for byte.
 
 #include <cstdint>
@@ -15,7 +16,8 @@
 #include "app/station/telemetry.h"
 #include "common/mission/mission_file.h"
 #include "common/mission/scene.h"
-#include "drivers/fotokite_device.h"
+#include "drivers/bus_frame.h"
+#include "drivers/device.h"
 #include "sim_hil/sim_config.h"
 #include "sim_hil/simulator.h"
 
@@ -56,7 +58,8 @@ class Lockstep {
   Duration period_;
   sim::Simulator simulator_;
   MemoryPort port_;
-  FotokiteDevice device_;
+  std::unique_ptr<FramePort> frames_;  ///< On the Tautline bus only.
+  std::unique_ptr<Device> device_;
   Station station_;
   TelemetrySink* sink_;
   std::unique_ptr<Telemetry> telemetry_;

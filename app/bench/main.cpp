@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -12,9 +13,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/bench/flight_log_replay.h"
 #include "app/bench/lockstep.h"
 #include "app/bench/log_sink.h"
 #include "app/bench/replay.h"
+#include "app/station/recording.h"
 #include "app/version.h"
 #include "common/clock.h"
 #include "common/error.h"
@@ -34,6 +37,7 @@ struct Options {
   std::string log;
   std::uint64_t seed{1};
   double limit_s{900.0};
+  double speed{0.0};
   bool json{false};
 };
 
@@ -90,8 +94,45 @@ ExitCode fly(const Options& o) {
   return success ? ExitCode::kOk : ExitCode::kFailed;
 }
 
+void showSecond(Duration since_start, const Estimate& e) {
+  fmt::print("{:7.1f} s  x {:6.2f}  y {:6.2f}  z {:6.2f} m  {}\n", toSeconds(since_start),
+             e.p_WD.x(), e.p_WD.y(), e.p_WD.z(), nameOf(e.health, kEstimateHealthNames));
+  std::fflush(stdout);
+}
+
+ExitCode replayTextLog(const Options& o, Recording recording, const bench::Playback& playback) {
+  const StationConfig station =
+      o.station_config.empty() ? StationConfig{} : loadConfig<StationConfig>(o.station_config);
+  const bench::FlightLogReplay r =
+      bench::replayFlightLog(std::move(recording), station.core.localizer, playback);
+  if (o.json) {
+    fmt::print("{}\n", nlohmann::json{{"rows", r.rows},
+                                      {"rows_skipped", r.rows_skipped},
+                                      {"rows_with_contact", r.rows_with_contact},
+                                      {"reel_samples", r.reel_samples},
+                                      {"angle_samples", r.angle_samples},
+                                      {"duration_s", r.duration_s},
+                                      {"usable", r.usable},
+                                      {"distance_mean_m", r.distance_mean_m},
+                                      {"distance_max_m", r.distance_max_m}}
+                           .dump());
+  } else {
+    fmt::print(
+        "{} rows over {:.0f} s ({} skipped, {} with a contact), {} length and {} angle samples; "
+        "usable {:.0f} % of the time; {:.2f} m mean, {:.2f} m at most from the log's own "
+        "position\n",
+        r.rows, r.duration_s, r.rows_skipped, r.rows_with_contact, r.reel_samples, r.angle_samples,
+        100.0 * r.usable, r.distance_mean_m, r.distance_max_m);
+  }
+  return r.usable > 0.0 ? ExitCode::kOk : ExitCode::kFailed;
+}
+
 ExitCode replayLog(const Options& o) {
-  const bench::ReplayResult r = bench::replay(o.log);
+  bench::Playback playback;
+  playback.speed = o.speed;
+  if (o.speed > 0.0 && !o.json) playback.each_second = showSecond;
+  if (!isLcmLog(o.log)) return replayTextLog(o, readRecording(o.log), playback);
+  const bench::ReplayResult r = bench::replay(o.log, playback);
   const bool same = r.differences == 0 && r.commands_compared > 0;
   if (o.json) {
     fmt::print("{}\n", nlohmann::json{{"cycles", r.cycles},
@@ -128,10 +169,18 @@ void addFly(CLI::App& app, Options& options, ExitCode& result) {
 
 void addReplay(CLI::App& app, Options& options, ExitCode& result) {
   CLI::App* verb = app.add_subcommand(
-      "replay", "Step a recorded flight again; exit code 0 only if every command is the same");
-  verb->add_option("log", options.log, "LCM log")->required();
+      "replay",
+      "Step a recorded flight again; exit code 0 only if every command is the same. A text log of "
+      "the published flights goes through the estimator");
+  verb->add_option("log", options.log, "LCM log, or text log of the published flights")->required();
+  verb->add_option("--speed", options.speed,
+                   "times real time, with a line for each second; 0: as fast as it goes")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  verb->add_option("--station-config", options.station_config,
+                   "station's TOML file, for text logs: its localizer");
   verb->add_flag("--json", options.json, "one JSON object instead of words");
-  verb->footer("Example: tautline-bench replay flight.lcm");
+  verb->footer("Example: tautline-bench replay flight.lcm --speed 2");
   verb->callback([&] { result = replayLog(options); });
 }
 

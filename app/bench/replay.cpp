@@ -88,7 +88,7 @@ Contents readLog(const std::filesystem::path& path) {
 
 }  // namespace
 
-ReplayResult replay(const std::filesystem::path& path) {
+ReplayResult replay(const std::filesystem::path& path, const Playback& playback) {
   const Contents log = readLog(path);
   const auto station = std::make_unique<Station>(log.config->core);
   CommandCatcher catcher;
@@ -96,6 +96,7 @@ ReplayResult replay(const std::filesystem::path& path) {
   Telemetry telemetry(catcher, log.config->run_mode, Duration::zero(), Duration::zero());
 
   ReplayResult result;
+  PlaybackClock clock(playback);
   for (const tautline::station_input_t& message : log.inputs) {
     StepInput in = inputOf(message);
     if (message.chunk_sequence != 0) {
@@ -104,7 +105,9 @@ ReplayResult replay(const std::filesystem::path& path) {
         throw InputError({.file = path.string(), .problem = "a MISSION_CHUNK is missing"});
       in.chunk = &chunk->second;
     }
-    telemetry.publish(in, station->step(in));
+    const StepOutput& out = station->step(in);
+    telemetry.publish(in, out);
+    clock.cycle(Duration(message.now_ns - log.inputs.front().now_ns), out.estimate);
     ++result.cycles;
     const auto recorded = log.commands.find(message.utime);
     if (recorded == log.commands.end()) continue;

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <string>
 
+#include "app/bench/playback.h"
+
 namespace tautline::bench {
 
 struct ReplayResult {
@@ -20,6 +22,6 @@ struct ReplayResult {
 
 /// Replays `log` with the configuration that is in it. @throws InputError for a log that cannot be
 /// replayed.
-[[nodiscard]] ReplayResult replay(const std::filesystem::path& log);
+[[nodiscard]] ReplayResult replay(const std::filesystem::path& log, const Playback& playback = {});
 
 }  // namespace tautline::bench

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/station_client.h"
+#include "app/station/events.h"
 #include "common/estimate.h"
 #include "common/mission/mission_check.h"
 #include "common/mission/mission_file.h"
@@ -235,6 +236,7 @@ ExitCode status(const Options& options) {
       nameOf(static_cast<EstimateHealth>(v.estimate->health), kEstimateHealthNames);
   const char* phase = nameOf(static_cast<VehiclePhase>(v.vehicle->phase), kVehiclePhaseNames);
   const std::string conditions = describe(bitsOf(v.state->conditions));
+  const auto fault = static_cast<LinkFault>(v.vehicle->link_fault);
   if (options.json) {
     const auto& p = v.estimate->position_m;
     fmt::print("{}\n", nlohmann::json{{"run_mode", run_mode},
@@ -247,12 +249,17 @@ ExitCode status(const Options& options) {
                                        v.tether->length_free_m + v.tether->length_static_m},
                                       {"tension_n", v.tether->tension_n},
                                       {"vehicle", phase},
-                                      {"battery_v", v.vehicle->ground_battery_v}}
+                                      {"battery_v", v.vehicle->ground_battery_v},
+                                      {"link_fault", nameOf(fault, kLinkFaultNames)}}
                            .dump());
     return ExitCode::kOk;
   }
   fmt::print("{:<10} {} ({})\n", "mode", modeName(*v.state), run_mode);
   fmt::print("{:<10} {}\n", "conditions", conditions.empty() ? "none" : conditions);
+  if (fault != LinkFault::kNone) {
+    const EventText& text = textOf(eventOf(fault));
+    fmt::print("{:<10} {}; {}\n", "link", text.text, text.remedy);
+  }
   fmt::print("{:<10} x {:.2f}  y {:.2f}  z {:.2f} m, {}\n", "position", v.estimate->position_m[0],
              v.estimate->position_m[1], v.estimate->position_m[2], health);
   fmt::print("{:<10} {:.2f} m out, {:.2f} N, {} contact(s)\n", "tether",

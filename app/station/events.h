@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "common/vehicle.h"
 #include "control/supervisor.h"
 
 namespace tautline {
@@ -35,6 +36,18 @@ enum class EventCode : std::uint8_t {
   kVehicleFault,
   kVehicleFaultCleared,
   kLoopOverruns,
+  kLinkSilent,  ///< This and the following in the order of LinkFault.
+  kLinkGarbage,
+  kLinkOtherProtocol,
+  kLinkUnreliable,
+  kLinkSensorRate,
+  kLinkAnotherStation,
+  kLinkInterfaceMissing,
+  kLinkInterfaceDown,
+  kLinkBusOff,
+  kLinkBusErrors,
+  kLinkNoAcknowledge,
+  kLinkFaultCleared,
 };
 
 struct EventText {
@@ -45,7 +58,7 @@ struct EventText {
   const char* remedy;
 };
 
-inline constexpr std::array<EventText, 17> kEventTexts{{
+inline constexpr std::array<EventText, 29> kEventTexts{{
     {EventCode::kModeChanged, Severity::kInfo, "mode ", "", ""},
     {EventCode::kMissionCompleted, Severity::kInfo, "mission completed",
      "hovering at its last waypoint", ""},
@@ -77,12 +90,49 @@ inline constexpr std::array<EventText, 17> kEventTexts{{
     {EventCode::kVehicleFaultCleared, Severity::kInfo, "the vehicle's fault is gone", "", ""},
     {EventCode::kLoopOverruns, Severity::kError, "the control loop misses its period",
      "mission ended, hovering", "free the machine, or lower loop_rate_hz"},
+    {EventCode::kLinkSilent, Severity::kError, "the device is connected and says nothing",
+     "no arming",
+     "check its power and wiring, and that serial.baud and the bus's bit rate are its own"},
+    {EventCode::kLinkGarbage, Severity::kError, "what the device sends means nothing", "no arming",
+     "set serial.baud to the device's own rate; then check cable and ground"},
+    {EventCode::kLinkOtherProtocol, Severity::kError,
+     "the device speaks another protocol than the configured one", "no arming",
+     "set device to what is plugged in (fotokite, tautline-can, tautline-serial), or plug in the "
+     "other one"},
+    {EventCode::kLinkUnreliable, Severity::kError,
+     "half of the device's messages or more fail their check", "no arming",
+     "look for two devices with one identifier, then check cable, ground and termination"},
+    {EventCode::kLinkSensorRate, Severity::kError, "a sensor sends at another rate than agreed",
+     "no arming", "set reel, angle sensor and vehicle to one message every 10 ms"},
+    {EventCode::kLinkAnotherStation, Severity::kCritical, "another station commands on this bus",
+     "no arming", "stop the other tautline-station, or take it off the bus"},
+    {EventCode::kLinkInterfaceMissing, Severity::kError, "the CAN interface is not there",
+     "no arming; trying again",
+     "plug the adapter in; see `ip -brief link show type can`, and can.interface"},
+    {EventCode::kLinkInterfaceDown, Severity::kError, "the CAN interface is down",
+     "no arming; trying again", "as root: ip link set can0 up type can bitrate 500000"},
+    {EventCode::kLinkBusOff, Severity::kError, "the CAN controller is off the bus", "no arming",
+     "check wiring and bit rate; as root: ip link set can0 type can restart-ms 100"},
+    {EventCode::kLinkBusErrors, Severity::kError, "the CAN controller sees errors on the bus",
+     "no arming", "check the bit rate (500000), wiring, and 120 ohm at both ends"},
+    {EventCode::kLinkNoAcknowledge, Severity::kError, "nobody on the bus acknowledges", "no arming",
+     "switch the devices on; then check wiring, bit rate and termination"},
+    {EventCode::kLinkFaultCleared, Severity::kInfo, "the link is in order again", "", ""},
 }};
 
 /// Real-time safe: no allocation, no locks, no exceptions.
 [[nodiscard]] constexpr const EventText& textOf(EventCode code) noexcept {
   return kEventTexts[static_cast<std::size_t>(code)];
 }
+
+/// The event of a link's fault. Real-time safe: no allocation, no locks, no exceptions.
+[[nodiscard]] constexpr EventCode eventOf(LinkFault fault) noexcept {
+  if (fault == LinkFault::kNone) return EventCode::kLinkFaultCleared;
+  return static_cast<EventCode>(static_cast<std::size_t>(EventCode::kLinkSilent) +
+                                static_cast<std::size_t>(fault) - 1);
+}
+static_assert(eventOf(LinkFault::kSilent) == EventCode::kLinkSilent &&
+              eventOf(LinkFault::kNoAcknowledge) == EventCode::kLinkNoAcknowledge);
 
 static_assert(
     [] {

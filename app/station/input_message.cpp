@@ -120,7 +120,14 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
             static_cast<std::uint32_t>(m.link_lines_ok),
             static_cast<std::uint32_t>(m.link_lines_bad),
             static_cast<std::uint32_t>(m.link_bytes_dropped),
-            static_cast<std::uint32_t>(m.link_reconnects)};
+            static_cast<std::uint32_t>(m.link_reconnects),
+            static_cast<LinkFault>(m.link_fault),
+            static_cast<std::uint32_t>(m.link_repeated),
+            static_cast<std::uint32_t>(m.link_wrong_sequence),
+            static_cast<std::uint32_t>(m.link_check_errors),
+            static_cast<std::uint32_t>(m.link_timeouts),
+            static_cast<std::uint32_t>(m.link_bus_errors),
+            static_cast<std::uint32_t>(m.link_bus_off)};
   return in;
 }
 

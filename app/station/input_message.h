@@ -40,6 +40,13 @@ void putLink(Message& m, const LinkStatus& link) noexcept {
   m.link_lines_bad = static_cast<std::int32_t>(link.lines_bad);
   m.link_bytes_dropped = static_cast<std::int32_t>(link.bytes_dropped);
   m.link_reconnects = static_cast<std::int32_t>(link.reconnects);
+  m.link_fault = static_cast<std::int8_t>(link.fault);
+  m.link_repeated = static_cast<std::int32_t>(link.repeated);
+  m.link_wrong_sequence = static_cast<std::int32_t>(link.wrong_sequence);
+  m.link_check_errors = static_cast<std::int32_t>(link.check_errors);
+  m.link_timeouts = static_cast<std::int32_t>(link.timeouts);
+  m.link_bus_errors = static_cast<std::int32_t>(link.bus_errors);
+  m.link_bus_off = static_cast<std::int32_t>(link.bus_off);
 }
 
 }  // namespace tautline

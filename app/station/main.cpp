@@ -13,12 +13,12 @@
 #include <fmt/format.h>
 
 #include "app/station/black_box.h"
-#include "app/station/emulated_machine.h"
 #include "app/station/lcm_link.h"
 #include "app/station/real_time_loop.h"
 #include "app/station/service_notifier.h"
 #include "app/station/station.h"
 #include "app/station/station_config.h"
+#include "app/station/station_device.h"
 #include "app/station/telemetry.h"
 #include "app/version.h"
 #include "common/clock.h"
@@ -26,8 +26,6 @@
 #include "common/mission/scene.h"
 #include "common/realtime.h"
 #include "common/toml/config_file.h"
-#include "drivers/fotokite_device.h"
-#include "drivers/serial_port.h"
 #include "lcmtypes/channels.h"
 
 namespace {
@@ -49,7 +47,9 @@ struct Options {
 
 void addOptions(CLI::App& app, Options& o) {
   app.add_option("--config", o.config_file, "station's TOML file; without it, all defaults");
-  app.add_option("--device", o.device, "serial device, instead of serial.device");
+  app.add_option("--device", o.device,
+                 "where the device is, instead of the file's: serial.device, can.interface or "
+                 "replay.file");
   app.add_option("--scene", o.scene_file,
                  "scene file whose start is home, instead of core.guidance.home_position_m");
   app.add_option("--lcm-url", o.lcm_url, "where the other programs are")->capture_default_str();
@@ -64,7 +64,7 @@ void addOptions(CLI::App& app, Options& o) {
 StationConfig effectiveConfig(const Options& o) {
   StationConfig config =
       o.config_file.empty() ? StationConfig{} : loadConfig<StationConfig>(o.config_file);
-  if (!o.device.empty()) config.serial.device = o.device;
+  if (!o.device.empty()) placeOf(config) = o.device;
   if (!o.scene_file.empty()) {
     const Scene scene = sceneInWorld(readScene(o.scene_file));
     if (!scene.start) {
@@ -75,9 +75,6 @@ StationConfig effectiveConfig(const Options& o) {
     }
     config.core.guidance.home_position_m = *scene.start;
   }
-  // A bench must never move a real machine, whatever is plugged in later.
-  config.serial.pseudo_terminal_only =
-      config.run_mode != RunMode::kReal && !thisMachineHasEmulatedUart();
   return config;
 }
 
@@ -107,15 +104,10 @@ void run(const Options& options) {
   }
 
   LcmLink lcm(options.lcm_url);
-  SerialPort port(config.serial);
-  const SerialOpenResult opened = port.open();
-  if (opened.status == SerialStatus::kRealDevice)
-    throw InputError({.problem = opened.reason}, ExitCode::kRefused);
-  if (!opened) {
-    // The loop goes on and keeps trying: a device that is plugged in later must not need a restart.
-    fmt::print(stderr, "tautline-station: warning: {}; trying again\n", opened.reason);
-  }
-  FotokiteDevice device(port, config.fotokite);
+  const StationDevice made = makeDevice(config);
+  Device& device = *made.device;
+  if (!made.warning.empty())
+    fmt::print(stderr, "tautline-station: warning: {}; trying again\n", made.warning);
   const auto station = std::make_unique<Station>(config.core);
   const auto black_box =
       config.black_box.empty() ? nullptr : std::make_unique<BlackBox>(config.black_box);
@@ -131,7 +123,7 @@ void run(const Options& options) {
 
   becomeRealTime(config);
   fmt::print("tautline-station {}: {} on {}, {:g} Hz, {}; stop with Ctrl-C\n", kVersion,
-             device.name(), config.serial.device, config.loop_rate_hz,
+             device.name(), made.place, config.loop_rate_hz,
              nameOf(config.run_mode, kRunModeNames));
   std::fflush(stdout);
 
@@ -145,8 +137,9 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Tautline's station: flies a tethered drone through its serial device, talks LCM",
-               "tautline-station"};
+  CLI::App app{
+      "Tautline's station: flies a tethered drone through its serial or CAN device, talks LCM",
+      "tautline-station"};
   Options options;
   addOptions(app, options);
   std::signal(SIGTERM, onSignal);

@@ -60,6 +60,7 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   out_.estimate = localizer_.update(in.now, in.sensors, last_command_, out_.anchor);
   out_.conditions = assess(in, out_.estimate);
   tellChanges(conditions_before);
+  tellLink(in.sensors.link.fault);
 
   // Decide: what the operator asks for, what the supervisor allows.
   const Request request = takeCommand(in);
@@ -103,6 +104,7 @@ ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noex
   set.set(Condition::kAttitudeStale, unusable(SensorStream::kAttitude));
   set.set(Condition::kVehicleStale, unusable(SensorStream::kVehicle));
   set.set(Condition::kLinkLost, !f.link.connected);
+  set.set(Condition::kLinkFault, f.link.fault != LinkFault::kNone);
   set.set(Condition::kLocalizationLost, !estimate.usable());
   set.set(Condition::kVehicleFault,
           f.vehicle.sequence > 0 && f.vehicle.value.phase == VehiclePhase::kFault);
@@ -219,6 +221,13 @@ void Station::tellChanges(ConditionSet before) noexcept {
   }
   if (out_.conditions.has(Condition::kOverruns) && !before.has(Condition::kOverruns))
     tell({EventCode::kLoopOverruns, {}, {}});
+}
+
+/// On the ground too: it is there that a wrong device or a wrong setting shows.
+void Station::tellLink(LinkFault fault) noexcept {
+  if (fault == link_fault_) return;
+  link_fault_ = fault;
+  tell({eventOf(fault), {}, {}});
 }
 
 void Station::tellMission(const ExecutorStatus& mission) noexcept {

@@ -76,6 +76,7 @@ class Station {
   [[nodiscard]] VehicleCommand override(const VehicleCommand& gated) noexcept;
   void tell(StationEvent event) noexcept;
   void tellChanges(ConditionSet before) noexcept;
+  void tellLink(LinkFault fault) noexcept;
   void tellMission(const ExecutorStatus& mission) noexcept;
 
   CoreConfig config_;
@@ -94,6 +95,7 @@ class Station {
       answered_{};  ///< The last ones, so that a command sent again acts once.
   std::size_t next_answer_{0};
   std::int64_t commands_refused_{0};
+  LinkFault link_fault_{LinkFault::kNone};  ///< Last told.
 };
 
 }  // namespace tautline

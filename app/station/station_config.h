@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "app/station/replay_device.h"
+#include "common/error.h"
 #include "common/fields.h"
 #include "common/realtime.h"
 #include "common/vehicle.h"
@@ -19,8 +21,10 @@
 #include "control/reel_dead_zone.h"
 #include "control/supervisor.h"
 #include "control/vehicle_limits.h"
+#include "drivers/can_socket.h"
 #include "drivers/fotokite_device.h"
 #include "drivers/serial_port.h"
+#include "drivers/tautline_device.h"
 #include "estimation/localizer.h"
 
 namespace tautline {
@@ -91,8 +95,22 @@ enum class RealTimePolicy : std::uint8_t {
 inline constexpr std::array<EnumName<RealTimePolicy>, 2> kRealTimePolicyNames{
     {{RealTimePolicy::kIgnore, "ignore"}, {RealTimePolicy::kEnforce, "enforce"}}};
 
+/// What the station flies.
+enum class DeviceKind : std::uint8_t {
+  kFotokite,        ///< Fotokite Pro ground station on `serial`.
+  kTautlineCan,     ///< Tautline bus on `can`.
+  kTautlineSerial,  ///< Tautline bus on `serial`.
+  kReplay,          ///< A recording: nothing moves.
+};
+inline constexpr std::array<EnumName<DeviceKind>, 4> kDeviceKindNames{
+    {{DeviceKind::kFotokite, "fotokite"},
+     {DeviceKind::kTautlineCan, "tautline-can"},
+     {DeviceKind::kTautlineSerial, "tautline-serial"},
+     {DeviceKind::kReplay, "replay"}}};
+
 struct StationConfig {
   RunMode run_mode{RunMode::kReal};
+  DeviceKind device{DeviceKind::kFotokite};
   double loop_rate_hz{100.0};
   double telemetry_rate_hz{20.0};
   std::string black_box{"/dev/shm/tautline-station.blackbox"};
@@ -100,12 +118,16 @@ struct StationConfig {
   int realtime_priority{50};
   int realtime_cpu{-1};
   SerialConfig serial;
+  CanConfig can;
   FotokiteConfig fotokite;
+  TautlineConfig tautline;
+  ReplayConfig replay;
   CoreConfig core;
 
   template <class Visitor>
   void fields(Visitor& v) {
     v.choice("run_mode", run_mode, kRunModeNames, "what this station is part of");
+    v.choice("device", device, kDeviceKindNames, "what the station flies");
     v.field("loop_rate_hz", loop_rate_hz, Range{10, 1000}, "cycles a second");
     v.field("telemetry_rate_hz", telemetry_rate_hz, Range{1, 1000}, "state messages a second");
     v.field("black_box", black_box, "file of the last cycles; empty: none");
@@ -115,8 +137,20 @@ struct StationConfig {
             "SCHED_FIFO priority; 0 leaves the scheduler alone");
     v.field("realtime_cpu", realtime_cpu, Range{-1, 1023}, "processor of the loop; -1: any");
     v.section("serial", serial);
+    v.section("can", can);
     v.section("fotokite", fotokite);
+    v.section("tautline", tautline);
+    v.section("replay", replay);
     v.section("core", core);
+  }
+
+  /// Throws InputError for what a single range cannot say.
+  void validate() const {
+    if (device != DeviceKind::kReplay || run_mode != RunMode::kReal) return;
+    throw InputError({.key = "run_mode",
+                      .problem = "is REAL, and a recording moves nothing",
+                      .allowed = "SIM or HIL with device = \"replay\"",
+                      .remedy = "set run_mode = \"SIM\""});
   }
 };
 

@@ -89,9 +89,9 @@ TEST_P(AllCases, EndInASafeMode) {
           }
           if (out.mode == M::kArmed && from != M::kArmed) {
             EXPECT_EQ(request.value, R::kArm) << what;
-            EXPECT_TRUE(
-                (set & ConditionSet{C::kReelStale, C::kAnglesStale, C::kLinkLost, C::kVehicleFault})
-                    .empty())
+            EXPECT_TRUE((set & ConditionSet{C::kReelStale, C::kAnglesStale, C::kLinkLost,
+                                            C::kLinkFault, C::kVehicleFault})
+                            .empty())
                 << what;
           }
           if (out.mode == M::kAuto) {

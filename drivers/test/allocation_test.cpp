@@ -1,6 +1,8 @@
 // After start-up nothing in the drivers touches the heap: not while flying, not on a bad line, not
 // when the cable is pulled.
 
+#include <linux/can/error.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
@@ -9,8 +11,12 @@
 #include <gtest/gtest.h>
 
 #include "common/testing/malloc_guard.h"
+#include "drivers/can_socket.h"
+#include "drivers/cobs_port.h"
 #include "drivers/fotokite_device.h"
 #include "drivers/serial_port.h"
+#include "drivers/tautline_device.h"
+#include "drivers/test/can_pair.h"
 #include "drivers/test/pty.h"
 
 namespace tautline {
@@ -72,6 +78,91 @@ TEST(Allocation, NoneInTenThousandCyclesOnATerminal) {
   EXPECT_GT(link.lines_bad, 20000U);
   EXPECT_GT(link.bytes_dropped, 0U);
   EXPECT_EQ(link.reconnects, 1U);
+}
+
+/// 10,000 cycles of a device on the bus, between what `before` does to its far end in each of them.
+template <class Before>
+long heapCallsOf(TautlineDevice& device, SensorFrame& frame, Before&& before) {
+  long heap_calls = 0;
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    before(cycle);
+    const Time now = Time{} + cycle * 10ms;
+    const MallocGuard guard;
+    device.read(now, frame);
+    device.write(now, commandAt(cycle));
+    heap_calls += guard.allocations() + guard.deallocations();
+  }
+  return heap_calls;
+}
+
+std::array<BusFrame, 5> sensorMessages(int cycle) {
+  const auto alive = static_cast<std::uint8_t>(cycle % 16);
+  std::array<BusFrame, 5> messages{
+      bus::encode(bus::Reel{cycle, 0.1, 1.0}, alive), bus::encode(bus::Angles{0.5, 0.2, {}}, alive),
+      bus::encode(bus::Attitude{}, alive), bus::encode(bus::VehicleStatus{}, alive), BusFrame{}};
+  messages[4].id = 0x345;                            // someone else's
+  if (cycle % 10 == 0) messages[1].data[0] ^= 0x01;  // garbled
+  if (cycle % 50 < 2) messages[0] = messages[2];     // lost, and one twice
+  return messages;
+}
+
+TEST(Allocation, NoneInTenThousandCyclesOnTheBus) {
+  if (!MallocGuard::available())
+    GTEST_SKIP() << "a sanitizer owns malloc in this build: nothing to count";
+  testing::CanPair pair;
+  CanSocket socket(CanConfig{.interface = "tautline_no0"}, kTautlineIds);
+  ASSERT_TRUE(socket.adopt(pair.release()));
+  TautlineDevice device(socket, TautlineConfig{}, "tautline-can");
+  SensorFrame frame;
+  const long heap_calls = heapCallsOf(device, frame, [&pair](int cycle) {
+    if (cycle == 9000)
+      pair.hangUp();  // from here on it tries to open an interface that is not there
+    if (cycle >= 9000) return;
+    for (const BusFrame& message : sensorMessages(cycle)) pair.send(message);
+    can_frame error{};
+    error.can_id = CAN_ERR_FLAG | CAN_ERR_ACK;
+    if (cycle % 100 == 0) pair.send(error);
+    // Now and then the far end does not read for a while, so that the bus takes no more.
+    can_frame sink{};
+    if (cycle % 4000 < 2000)
+      while (::recv(pair.farEnd(), &sink, sizeof(sink), 0) > 0) continue;
+  });
+  EXPECT_EQ(heap_calls, 0);
+  EXPECT_GT(device.status().lines_ok, 30000U);
+  EXPECT_GT(device.status().check_errors, 800U);
+  EXPECT_GT(device.status().repeated, 100U);
+  EXPECT_GT(device.status().bytes_dropped, 0U);
+  EXPECT_EQ(device.status().bus_errors, 90U);
+  EXPECT_FALSE(device.status().connected);
+}
+
+TEST(Allocation, NoneInTenThousandCyclesOnTheSerialBus) {
+  if (!MallocGuard::available())
+    GTEST_SKIP() << "a sanitizer owns malloc in this build: nothing to count";
+  Pty pty;
+  SerialConfig config;
+  config.device = pty.path();
+  SerialPort serial(config);
+  ASSERT_TRUE(serial.open());
+  CobsPort cobs(serial);
+  TautlineDevice device(cobs, TautlineConfig{}, "tautline-serial");
+  SensorFrame frame;
+  std::array<char, 4096> sink{};
+  const long heap_calls = heapCallsOf(device, frame, [&](int cycle) {
+    if (cycle == kCycles / 2) pty.unplug();
+    if (cycle == kCycles / 2 + 500) pty.plug();
+    if (pty.master() < 0) return;
+    for (const BusFrame& message : sensorMessages(cycle)) {
+      const bus::SerialFrame sent = bus::encodeSerial(message);
+      pty.send({reinterpret_cast<const char*>(sent.buffer.data()), sent.size});
+    }
+    pty.send("noise");
+    if (cycle % 4000 < 2000) static_cast<void>(::read(pty.master(), sink.data(), sink.size()));
+  });
+  EXPECT_EQ(heap_calls, 0);
+  EXPECT_GT(device.status().lines_ok, 20000U);
+  EXPECT_GT(device.status().lines_bad, 9000U);
+  EXPECT_EQ(device.status().reconnects, 1U);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "app/bench/log_sink.h"
 #include "app/bench/replay.h"
+#include "common/error.h"
 #include "common/testing/malloc_guard.h"
 #include "common/toml/config_file.h"
 
@@ -257,6 +258,42 @@ TEST(Lockstep, NavigateWithoutThatMissionIsRefused) {
   ASSERT_TRUE(out.ack);
   EXPECT_EQ(out.ack->result, AckResult::kBadMission);
   EXPECT_EQ(flight.mode(), Mode::kHold);
+}
+
+LockstepConfig busConfig(const std::string& scene, std::uint64_t seed) {
+  LockstepConfig config = benchConfig(scene, seed);
+  config.station = loadConfig<StationConfig>(kConfig / "station_tautline_serial.toml");
+  return config;
+}
+
+TEST(TautlineBus, FliesAMissionInLockstep) {
+  Lockstep bench(busConfig("open", 1), nullptr);
+  const FlightResult r = flyMission(bench, *mission("square").plan, seconds(900));
+  EXPECT_TRUE(r.completed);
+  EXPECT_TRUE(r.landed);
+  const LinkStatus& link = bench.sensors().link;
+  EXPECT_GT(link.lines_ok, 10000U);
+  EXPECT_EQ(link.lines_bad, 0U);
+  EXPECT_EQ(link.timeouts, 0U);
+  EXPECT_EQ(link.fault, LinkFault::kNone);
+}
+
+TEST(TautlineBus, ReplaysBitExactly) {
+  const fs::path log = temporary("bus.lcm");
+  {
+    LogSink sink(log);
+    Lockstep bench(busConfig("open", 2), &sink);
+    EXPECT_TRUE(flyMission(bench, *mission("square").plan, seconds(900)).completed);
+  }
+  const ReplayResult r = replay(log);
+  EXPECT_GT(r.commands_compared, 100);
+  EXPECT_EQ(r.differences, 0) << r.first_difference;
+}
+
+TEST(TautlineBus, CanHasNoLockstep) {
+  LockstepConfig config = busConfig("open", 1);
+  config.station.device = DeviceKind::kTautlineCan;
+  EXPECT_THROW(Lockstep(config, nullptr), InputError);
 }
 
 }  // namespace

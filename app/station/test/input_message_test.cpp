@@ -34,6 +34,7 @@ tautline::station_input_t randomMessage(std::mt19937_64& random) {
   }
   m.reel_has_tension = 1;
   m.has_altitude = 1;
+  m.link_fault = static_cast<std::int8_t>(random() % kLinkFaultNames.size());
   m.vehicle_phase = static_cast<std::int8_t>(random() % 6);
   m.flight_mode = static_cast<std::int16_t>(random() % 256);
   m.ground_mode = static_cast<std::int16_t>(random() % 256);
