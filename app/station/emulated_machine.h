@@ -1,9 +1,10 @@
 #pragma once
 
 /// @file
-/// A bench may move nothing real, so it takes only a pseudo terminal as its serial device. The one
-/// exception is a machine that is emulated as a whole: its UART is a real device to the kernel
-/// inside, and ends in the simulator outside (docs/emulated_pi.md).
+/// A bench may move nothing real, so it takes only a pseudo terminal as its serial device and only
+/// a virtual CAN interface. The one exception is a machine that is emulated as a whole: its UART,
+/// and a CAN adapter on it, are real devices to the kernel inside, and end in the simulator outside
+/// (docs/emulated_pi.md).
 
 #include <string_view>
 

@@ -14,6 +14,11 @@
 namespace tautline {
 namespace {
 
+/// A bench must never move a real machine, whatever is plugged in later.
+bool benchOnly(const StationConfig& config) {
+  return config.run_mode != RunMode::kReal && !thisMachineHasEmulatedUart();
+}
+
 /// Keeps the reason for people, or ends the program where going on would be dangerous.
 template <class Result>
 std::string warningOf(const Result& opened, bool refused) {
@@ -23,9 +28,7 @@ std::string warningOf(const Result& opened, bool refused) {
 
 SerialPort& openSerial(const StationConfig& config, StationDevice& out) {
   SerialConfig serial = config.serial;
-  // A bench must never move a real machine, whatever is plugged in later.
-  serial.pseudo_terminal_only =
-      config.run_mode != RunMode::kReal && !thisMachineHasEmulatedUart();
+  serial.pseudo_terminal_only = benchOnly(config);
   auto port = std::make_unique<SerialPort>(serial);
   const SerialOpenResult opened = port->open();
   out.warning = warningOf(opened, opened.status == SerialStatus::kRealDevice);
@@ -36,7 +39,7 @@ SerialPort& openSerial(const StationConfig& config, StationDevice& out) {
 
 void openCan(const StationConfig& config, StationDevice& out) {
   CanConfig can = config.can;
-  can.virtual_only = config.run_mode != RunMode::kReal;
+  can.virtual_only = benchOnly(config);
   auto port = std::make_unique<CanSocket>(can, kTautlineIds);
   const CanOpenResult opened = port->open();
   out.warning = warningOf(opened, opened.status == CanStatus::kRealDevice);

@@ -6,7 +6,7 @@
 /bin/busybox mkdir -p /proc /sys /dev /tmp /mnt /usr/bin /usr/sbin /sbin
 /bin/busybox --install -s
 export PATH=/opt/tautline/bin:/usr/sbin:/usr/bin:/sbin:/bin
-mission='' scene='' collect='' device='' started_at='' limit_s=''
+mission='' scene='' collect='' device='' slcan='' vcan_test='' started_at='' limit_s=''
 # shellcheck source=/dev/null
 . /job
 
@@ -56,9 +56,23 @@ until [ -c "$device" ]; do
 done
 tell "booted in    $(cut -d' ' -f1 /proc/uptime) s"
 
+if [ -n "$vcan_test" ]; then
+  ip link add vcan0 type vcan && ip link set vcan0 up || finish 1 "no vcan in this kernel"
+  "$vcan_test" >/flight/vcan.txt 2>&1
+  code=$?
+  tell "$(grep -c '^\[       OK' /flight/vcan.txt) SocketCAN tests passed, $(grep -c '^\[  FAILED  \] [A-Z].*(' /flight/vcan.txt) failed, $(grep -c '^\[  SKIPPED \] [A-Z].*(' /flight/vcan.txt) skipped"
+  finish $code
+fi
+if [ -n "$slcan" ]; then
+  # The kernel's line discipline makes a CAN interface of the serial line: 500 kbit/s (-s6), opened (-o).
+  slcand -o -s6 "$device" "$slcan" || finish 4 "the serial port cannot be made a CAN adapter"
+  ip link set "$slcan" up || finish 4 "the CAN interface $slcan cannot be brought up"
+  device=$slcan
+fi
+
 lcm-logger --quiet --lcm-url="udpm://239.255.76.67:7667?ttl=0" /flight/flight.lcm >/flight/logger.txt 2>&1 &
 logger=$!
-tautline-station --config /opt/tautline/config/station_emulated_pi.toml --device "$device" \
+tautline-station --config /opt/tautline/config/station.toml --device "$device" \
   --scene "/opt/tautline/config/scenes/$scene" >/flight/station.txt 2>&1 &
 station=$!
 

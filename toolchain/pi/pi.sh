@@ -10,7 +10,7 @@ source toolchain/lib.sh
 # shellcheck source=toolchain/unpack.sh
 source toolchain/unpack.sh
 
-usage='allowed: --rt --raspi3b --can --headless --out DIR --mission FILE --scene FILE --seed N --limit SECONDS'
+usage='allowed: --rt --raspi3b --can --vcan --headless --out DIR --mission FILE --scene FILE --seed N --limit SECONDS'
 error() { # error EXIT_CODE TEXT
   echo "run pi: error: $2" >&2
   exit "$1"
@@ -19,6 +19,7 @@ error() { # error EXIT_CODE TEXT
 kernel_packages="machine arm64"
 board=virt
 can=false
+vcan=false
 headless=false
 out=
 mission=$root/config/missions/one_contact.mission.toml
@@ -30,6 +31,7 @@ while [[ $# -gt 0 ]]; do
     --rt) kernel_packages="machine-rt arm64" ;;
     --raspi3b) board=raspi3b ;;
     --can) can=true ;;
+    --vcan) vcan=true ;;
     --headless) headless=true ;;
     --out) out=${2:?--out needs a folder}; shift ;;
     --mission) mission=${2:?--mission needs a file}; shift ;;
@@ -48,7 +50,6 @@ if [[ -z $scene ]]; then
 fi
 [[ -f $scene ]] || error 5 "$scene: no such scene file; see config/scenes"
 [[ $limit_s =~ ^[0-9]+$ ]] || error 2 "--limit $limit_s: not a number of seconds"
-! $can || error 2 "--can: the station has no CAN device yet; fly over the serial line, without --can"
 out=$(realpath -m "${out:-$root/flights/$(date +%Y%m%d-%H%M%S)-pi-$name}")
 mkdir -p "$out"
 rm -f "$out"/{flight.lcm,report.json,report.html,series.csv,*.svg,*.txt}
@@ -115,13 +116,19 @@ make_initramfs() {
   cp "$base/bin/busybox" "$tree/bin/"
   cp toolchain/pi/init.sh "$tree/init"
   programs=("$pi/bin/tautline-station" "$pi/bin/tautline" "$sysroot/usr/bin/lcm-logger")
+  ! $can || programs+=("$base/usr/bin/slcand")
+  ! $vcan || programs+=("$pi/test/drivers_vcan_test")
   for program in "${programs[@]}"; do
     aarch64-linux-gnu-strip -o "$tree/opt/tautline/bin/$(basename "$program")" "$program"
   done
   while read -r file; do cp -L "$file" "$tree/lib/aarch64-linux-gnu/"; done < <(libraries_of "${programs[@]}")
   cp -L "$sysroot/lib/ld-linux-aarch64.so.1" "$tree/lib/"
   mkdir -p "$tree/opt/tautline/config"
-  cp -r config/station_emulated_pi.toml config/missions config/scenes "$tree/opt/tautline/config/"
+  cp -r config/missions config/scenes "$tree/opt/tautline/config/"
+  {
+    ! $can || echo 'device = "tautline-can"'
+    cat config/station_emulated_pi.toml
+  } >"$tree/opt/tautline/config/station.toml"
   cp "$mission" "$tree/opt/tautline/config/missions/"
   cp "$scene" "$tree/opt/tautline/config/scenes/"
   # In this order; those that a board does not have are left out inside.
@@ -137,20 +144,25 @@ mission='$(basename "$mission")'
 scene='$(basename "$scene")'
 collect=$([[ $board == virt ]] && echo 9p || echo sd)
 device=/dev/ttyAMA0
+slcan=$($can && echo can0 || true)
+vcan_test=$($vcan && echo drivers_vcan_test || true)
 started_at=$(date +%s)
 limit_s=$limit_s
 EOF
   (cd "$tree" && find . | cpio --quiet -o -H newc -R 0:0) | zstd -q -1 >"$work/initramfs.zst"
 }
 
-say "flying $name (seed $seed) on an emulated ${board/virt/Cortex-A72}; log and pictures go to $out"
+what="flying $name (seed $seed)"
+! $can || what+=" over SLCAN"
+! $vcan || what="SocketCAN tests"
+say "$what on an emulated ${board/virt/Cortex-A72}; log and pictures go to $out"
 make_initramfs
 # Both ends run against the wall clock: where that is allowed, they come before the host's ordinary processes.
 prefer() { # prefer PRIORITY PID
   chrt --all-tasks --rr --pid "$1" "$2" 2>/dev/null || true
 }
 link=$work/uart
-build/bin/tautline-sim --pty "$link" --scene "$scene" --seed "$seed" --config config/sim.toml --no-lcm >"$out/sim.txt" 2>&1 &
+build/bin/tautline-sim "$($can && echo --slcan || echo --pty)" "$link" --scene "$scene" --seed "$seed" --config config/sim.toml --no-lcm >"$out/sim.txt" 2>&1 &
 sim=$!; pids+=("$sim")
 prefer 21 "$sim"
 for _ in $(seq 100); do [[ -e $link ]] && break; sleep 0.1; done
@@ -207,6 +219,12 @@ stop TERM "$qemu"
 stop TERM "$sim"
 pids=()
 [[ $board == virt ]] || tar -x -f "$work/card" -C "$out" 2>/dev/null || true
+if $vcan && ((code == 0)); then
+  sed -n 's/^pi: \(kernel\|architecture\|booted in\) /\1 /p' "$out/console.txt" | tr -d '\r'
+  tail -n 2 "$out/vcan.txt"
+  echo "log         $out/vcan.txt"
+  exit 0
+fi
 if ((code != 0)) || [[ ! -s $out/flight.lcm ]]; then
   for log in "$out"/{qemu,console,station,operator,sim}.txt; do
     [[ -s $log ]] && { echo "--- $log" >&2; tail -n 5 "$log" >&2; }
