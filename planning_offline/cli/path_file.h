@@ -41,7 +41,8 @@ struct PathFileOptions {
 /// legacy file without a reel, is an error of usage.
 [[nodiscard]] GivenPath readPath(const std::string& file, const PathFileOptions& options);
 
-/// Throws InputError for the first point or way between two that is not in free space.
+/// Throws InputError for the first point or way between two that is not in free space
+/// (outsideSolids()), and for maps that are too long to tell (needSightSize()).
 void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space,
                  const std::string& file);
 

@@ -1,12 +1,9 @@
 #include "planning_offline/field/reach.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "common/error.h"
 #include "planning_offline/field/distance_field.h"
@@ -14,6 +11,7 @@
 #include "planning_offline/field/line_of_sight.h"
 #include "planning_offline/field/obstacles.h"
 #include "planning_offline/field/parallel.h"
+#include "planning_offline/field/reel_place.h"
 
 namespace tautline::planning {
 namespace {
@@ -100,24 +98,14 @@ ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                       const Progress& progress) {
   const GridShape& shape = map.shape;
   TAUTLINE_CHECK(free.size() == shape.size());
+  needSightSize(map);
   const std::vector<std::uint8_t> obstacles = tetherObstacles(map, options, progress);
-  const Eigen::Vector3d reel_cells = (reel - map.origin) / map.resolution;
-  if (!(reel_cells.cwiseAbs().maxCoeff() <= kSightFarthest)) {
-    throw InputError(
-        {.file = map.file,
-         .key = "reel",
-         .problem = fmt::format("({:g}, {:g}, {:g}) m is too far from the map", reel.x(), reel.y(),
-                                reel.z()),
-         .allowed = fmt::format("within {:g} m of its corner", kSightFarthest * map.resolution)});
-  }
-  if (!progress.cancelled() && !lineOfSight(shape, obstacles, reel_cells, reel_cells)) {
-    throw InputError({.file = map.file,
-                      .key = "reel",
-                      .problem = fmt::format("({:.3f}, {:.3f}, {:.3f}) m is inside an obstacle",
-                                             reel.x(), reel.y(), reel.z()),
-                      .allowed = "a place outside all occupied cells and their tether clearance",
-                      .remedy = "move the reel, or lower the tether clearance"});
-  }
+  // A cancelled inflation says nothing about the reel.
+  const std::span<const std::uint8_t> kept_out =
+      progress.cancelled() ? std::span<const std::uint8_t>{} : obstacles;
+  const Eigen::Vector3d reel_cells =
+      (checkedReel(map, reel, {.farthest = kSightFarthest, .blocked = kept_out}) - map.origin) /
+      map.resolution;
 
   ReachMap reach;
   reach.straight.resize(shape.size(), 0);

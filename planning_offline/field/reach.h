@@ -42,7 +42,8 @@ struct ReachMap {
 };
 
 /// `free` as freeSpace() gives it; obstacles for the tether are the map's occupied cells. The reel
-/// [m, M] may lie outside the map. Throws InputError if it is inside an obstacle or its clearance.
+/// [m, M] may lie outside the map. Throws InputError if it is inside an obstacle or its clearance
+/// (checkedReel()), or if it or the map's end is farther than kSightFarthest cells from the origin.
 /// When cancelled, cells that were not looked at yet count as not reached.
 [[nodiscard]] ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                                     const Eigen::Vector3d& reel, const ReachOptions& options,

@@ -255,12 +255,18 @@ else
 fi
 
 # Bad input.
+one=$config/scenes/one_contact.scene.toml
 printf 'type octile\nheight 3\nwidth 3\nmap\n...\n...\n...\n' >"$work/tiny.map"
 expect 2 '--output.*no reel|--output.*place of the reel' "$plan" plan --map "$work/tiny.map" --start 0.5,0.5,0.5 --goal 2.5,0.5,2.5 \
   --svg "$work/no.svg" --csv "$work/no.csv" -o "$work/no.mission.toml"
 [[ -e $work/no.svg || -e $work/no.csv ]] && fail "a plan without a place for its mission wrote files" "$work/no.*"
 expect 5 'nowhere/x.csv' "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --planner additive --csv "$work/nowhere/x.csv"
 expect 2 '--straight-tether.*does not reach the goal' "$plan" plan --map "$room" --straight-tether --goal 3.5,1.1,3.5
+expect 5 'reel: .2.4, 1.25, 2.8. m is inside an obstacle' "$plan" reach --map "$one" --reel 2.4,1.25,2.8
+printf 'type octile\nheight 1\nwidth 17000\nmap\n%s\n' "$(head -c 17000 /dev/zero | tr '\0' .)" >"$work/long.map"
+expect 5 'long.map: is 17000 x 1 x 1 cells; allowed: at most 16384' "$plan" reach --map "$work/long.map" --reel 0.5,0.5,0.5
+printf '1.5 0.5 0.5\n16900.5 0.5 0.5\n' >"$work/long.txt"
+expect 5 'long.map: is 17000 x 1 x 1 cells; allowed: at most 16384' "$plan" contacts --map "$work/long.map" --reel 0.5,0.5,0.5 --path "$work/long.txt"
 expect 5 'reel.*too far' "$plan" reach --map "$room" --reel 100000,0,0
 expect 2 "--connectivity: is '6'; allowed: faces.edges.vertices" "$plan" plan --map "$room" --connectivity 6 --goal 3.5,1.1,3.5
 holds "moves over faces only" "all(sum(abs(a - b) > 1e-9 for a, b in zip(p, q)) == 1 for p, q in zip(j['path'], j['path'][1:]))" \
@@ -274,6 +280,10 @@ expect 5 'rewards.*inside an obstacle' "$plan" plan --map "$room" --rewards <(pr
 printf '1.1 1.1 1.1\n3.1 1.1 3.1\n' >"$work/path.txt"
 expect 5 'path.txt: points 0 to 1.*leaves the free space' "$plan" risk --map "$room" --path "$work/path.txt"
 expect 5 'path.txt: points 0 to 1.*leaves the free space' "$plan" contacts --map "$room" --path "$work/path.txt"
+printf '1.6 1.25 2.8\n3.5 1.25 2.8\n' >"$work/plane.txt"
+for verb in contacts risk; do
+  expect 5 'plane.txt: points 0 to 1.*leaves the free space' "$plan" $verb --map "$one" --path "$work/plane.txt"
+done
 expect 2 '--start.*outside the map' "$plan" plan --map "$room" --start 9,9,9 --goal 3.5,1.1,3.5
 expect 2 '--start.*inside an obstacle' "$plan" plan --map "$room" --start 2,1,2 --goal 3.5,1.1,3.5
 expect 2 '--goal.*inside an obstacle' "$plan" plan --map "$room" --goal 2,1,2
