@@ -61,6 +61,7 @@ json tetherJson(const TetherState& state) {
     out["events"].push_back({{"kind", nameOf(event.kind, kContactChangeNames)},
                              {"position_m", toJson(event.position)},
                              {"vehicle_m", toJson(event.vehicle)},
+                             {"tether_length_before_m", event.length_before},
                              {"tether_length_m", event.length}});
   }
   return out;

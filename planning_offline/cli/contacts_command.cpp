@@ -23,11 +23,11 @@
 #include "planning_offline/cli/path_file.h"
 #include "planning_offline/cli/terminal_progress.h"
 #include "planning_offline/cli/workspace.h"
+#include "planning_offline/field/reel_place.h"
 #include "planning_offline/picture/contact_picture.h"
 #include "planning_offline/risk/risk_params.h"
 #include "planning_offline/tether/contact_plan.h"
 #include "planning_offline/tether/no_contact.h"
-#include "planning_offline/tether/reel_place.h"
 
 namespace tautline::planning {
 namespace {
@@ -81,7 +81,7 @@ class LimitCheck {
                      ? fmt::format("waypoint {}", i)
                      : fmt::format("on the way to waypoint {}", i);
         checkContacts(event);
-        checkLength(event.length, event.vehicle);
+        checkLength(event.longest(), event.vehicle);
       }
       where_ = fmt::format("waypoint {}", i);
       checkLength(state.length, state.position);

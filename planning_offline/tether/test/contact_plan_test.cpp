@@ -222,6 +222,43 @@ TEST_P(Walks, NoPlaceOnTheWayHasALongerTether) {
   });
 }
 
+TEST_P(Walks, EventsKnowTheTetherJustBeforeThem) {
+  int jumps = 0;
+  int longest_before_a_pop = 0;
+  forFlights(60, [&](const VoxelMap& map, const Points& path) {
+    const ContactPlan plan = planContacts(map, path[0], path);
+    const std::unique_ptr<TautString> string = makeTautString(map, path[0]);
+    StackId stack = kStraight;
+    double seen = 0.0;  // all that states and the tethers after the events show
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const TetherState& state = plan.states[i];
+      const double leg = (path[i] - path[i - 1]).norm();
+      if (!state.events.empty()) {
+        const ContactEvent& event = state.events.front();
+        const double back =
+            std::max((event.vehicle - path[i - 1]).norm() - 4e-3 * map.resolution, 0.0);
+        const Eigen::Vector3d p = path[i - 1] + back / leg * (path[i] - path[i - 1]);
+        EXPECT_NEAR(string->length(string->move(stack, path[i - 1], p), p), event.length_before,
+                    5e-3 * map.resolution);
+        EXPECT_LE(event.length_before, longestTether(plan));
+      }
+      for (const ContactEvent& event : state.events) {
+        seen = std::max(seen, event.length);
+        jumps += event.length_before - event.length > 0.01 * map.resolution ? 1 : 0;
+      }
+      seen = std::max(seen, state.length);
+      stack = string->move(stack, path[i - 1], path[i]);
+    }
+    longest_before_a_pop += longestTether(plan) > seen + 0.01 * map.resolution ? 1 : 0;
+  });
+  if (GetParam()) {
+    EXPECT_EQ(longest_before_a_pop, 0);  // nothing pins the string in the plane
+  } else {
+    EXPECT_GT(jumps, 5);
+    RecordProperty("longest_before_a_pop", longest_before_a_pop);
+  }
+}
+
 TEST_P(Walks, TheStringKnowsWhetherAContactTouchesAMarkedCell) {
   int touching = 0;
   walks::Random random(5);
