@@ -154,8 +154,7 @@ ExitCode runReach(const ReachArguments& arguments) {
                       .allowed = "x,y,z in metres"},
                      ExitCode::kUsage);
   }
-  const ReachOptions options{.length_max = arguments.limits.length_max,
-                             .elevation_min = arguments.limits.elevation_min,
+  const ReachOptions options{.limits = arguments.limits,
                              .tether_clearance = arguments.tether_clearance,
                              .threads = arguments.map.threads};
   const ReachMap reach =

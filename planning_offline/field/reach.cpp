@@ -1,9 +1,7 @@
 #include "planning_offline/field/reach.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "common/error.h"
 #include "planning_offline/field/distance_field.h"
@@ -29,16 +27,13 @@ std::vector<std::uint8_t> tetherObstacles(const VoxelMap& map, const ReachOption
 }
 
 /// Which of the cells that a straight tether reaches are within the limits.
-void countWithinLimits(const VoxelMap& map, const Eigen::Vector3d& reel,
-                       const ReachOptions& options, ReachMap& reach) {
+void countWithinLimits(const VoxelMap& map, const Eigen::Vector3d& reel, const TetherLimits& limits,
+                       ReachMap& reach) {
   for (std::size_t n = 0; n < reach.straight.size(); ++n) {
     if (reach.straight[n] == 0) continue;
-    const Eigen::Vector3d way = map.centre(static_cast<CellIndex>(n)) - reel;
-    const bool short_enough = options.length_max <= 0.0 || way.norm() <= options.length_max;
-    const bool high_enough =
-        options.elevation_min <= -90.0 ||
-        std::atan2(way.y(), std::hypot(way.x(), way.z())) * 180.0 / std::numbers::pi >=
-            options.elevation_min;
+    const Eigen::Vector3d vehicle = map.centre(static_cast<CellIndex>(n));
+    const bool short_enough = limits.allowsLength((vehicle - reel).norm());
+    const bool high_enough = limits.allowsElevation(reel, vehicle);
     reach.straight_within_length += short_enough ? 1U : 0U;
     reach.straight_within_elevation += high_enough ? 1U : 0U;
     reach.straight_within_limits += short_enough && high_enough ? 1U : 0U;
@@ -124,7 +119,7 @@ ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                                                   : connectedTo(shape, free, reach.take_off);
   reach.free = countOf(free);
   reach.straight_count = countOf(reach.straight);
-  countWithinLimits(map, reel, options, reach);
+  countWithinLimits(map, reel, options.limits, reach);
   reach.with_contacts_count = countOf(reach.with_contacts);
   return reach;
 }

@@ -227,6 +227,29 @@ holds "risk reads legacy paths too" "len(j['states']) == 3 and 0 < j['risk'] < 1
 # Hard limits of the tether.
 sed 's/name = "pillar"/name = "pillar"\nsharp = true/' "$room" >"$work/sharp.scene.toml"
 expect 3 'round.txt: waypoint 2: .* m of tether at .*; allowed: 3.5 m.*--length-max-m' "$plan" contacts --map "$room" --path "$work/round.txt" --length-max-m 3.5
+# Where a pinned contact comes off the tether is longest just before: 4.713 m, and less than 4.66 m everywhere else.
+cat >"$work/pinned.scene.toml" <<'EOF'
+version = 1
+name = "pinned"
+min_m = [0.0, 0.0, 0.0]
+max_m = [3.0, 3.0, 3.0]
+resolution_m = 0.3
+reel_m = [0.15, 0.15, 0.15]
+
+[[boxes]]
+name = "bar"
+min_m = [0.6, 0.6, 2.1]
+max_m = [1.5, 0.9, 2.7]
+
+[[boxes]]
+name = "block"
+min_m = [0.6, 1.2, 0.6]
+max_m = [0.9, 1.5, 1.2]
+EOF
+printf '0.15 1.95 1.35\n1.05 1.95 1.35\n1.65 0.45 2.25\n1.95 1.95 2.85\n2.85 1.95 2.85\n' >"$work/pinned.txt"
+expect 3 'pinned.txt: on the way to waypoint 4: 4.713 m of tether at .*; allowed: 4.7 m' "$plan" contacts --map "$work/pinned.scene.toml" --path "$work/pinned.txt" --length-max-m 4.7
+holds "the longest tether is the one before a pop" "abs(j['longest_tether_m'] - 4.713) < 1e-3 and j['states'][4]['events'][0]['tether_length_before_m'] == j['longest_tether_m'] \
+and max(s['tether_length_m'] for s in j['states']) < 4.66" "$plan" contacts --map "$work/pinned.scene.toml" --path "$work/pinned.txt" --length-max-m 4.72 --json
 expect 3 'round.txt: on the way to waypoint 2: contact number 1 forms at .*; allowed: at most 0 at once;.*--contacts-max' "$plan" contacts --map "$room" --path "$work/round.txt" --contacts-max 0
 expect 3 'round.txt: on the way to waypoint 2: the tether touches a forbidden surface at \(1.6,.*other side' "$plan" contacts --map "$work/sharp.scene.toml" \
   --path "$work/round.txt" -o "$work/no.mission.toml" --svg "$work/no.svg"

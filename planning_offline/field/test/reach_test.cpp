@@ -51,7 +51,7 @@ TEST(Reach, StraightIsLineOfSightAndTheLimitsCountApart) {
   CellIndex start = 0;
   while (free[static_cast<std::size_t>(start)] == 0) ++start;
   const Eigen::Vector3d reel = map.centre(start) + Eigen::Vector3d(0.013, -0.02, 0.031);
-  const ReachOptions options{.length_max = 1.7, .elevation_min = 5.0};
+  const ReachOptions options{.limits = {.length_max = 1.7, .elevation_min = 5.0}};
   const ReachMap reach = computeReach(map, free, reel, options, kQuiet);
   const std::vector<std::uint8_t> occupied = obstacleCells(map, false);
   std::size_t count = 0;
@@ -80,7 +80,8 @@ TEST(Reach, StraightIsLineOfSightAndTheLimitsCountApart) {
   EXPECT_LT(both, std::min(near, high));
   EXPECT_LT(std::max(near, high), count);
   EXPECT_EQ(reach.take_off, start);
-  const ReachMap one_thread = computeReach(map, free, reel, {1.7, 5.0, 0.0, 1}, kQuiet);
+  const ReachMap one_thread =
+      computeReach(map, free, reel, {.limits = options.limits, .threads = 1}, kQuiet);
   EXPECT_EQ(one_thread.straight, reach.straight);
 }
 
