@@ -143,7 +143,7 @@ void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space
     const CellIndex cell = map.indexAt(path[i]);
     if (cell == kNoCell || !space.lattice->free(cell)) {
       throw InputError({.file = file,
-                        .key = fmt::format("point {}", i),
+                        .key = fmt::format("waypoint {}", i),
                         .problem = fmt::format(
                             "{} is {} the map {}", pointText(path[i]),
                             cell == kNoCell ? "outside" : "not in the free space of", map.name)});
@@ -151,7 +151,7 @@ void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space
     if (i > 0 && !outsideSolids(map.shape, blocked, cells(path[i - 1]), cells(path[i]))) {
       throw InputError(
           {.file = file,
-           .key = fmt::format("points {} to {}", i - 1, i),
+           .key = fmt::format("waypoints {} to {}", i - 1, i),
            .problem = fmt::format("the way from {} to {} leaves the free space of the map {}",
                                   pointText(path[i - 1]), pointText(path[i]), map.name)});
     }
@@ -167,14 +167,16 @@ void needStraightStart(const VoxelMap& map, const Eigen::Vector3d& reel,
   const Eigen::Vector3d to = (start - map.origin) / map.resolution;
   const bool near = (from.array().abs() <= kSightFarthest).all();
   if (near && outsideSolids(map.shape, blocked, from, to)) return;
+  const bool planned = file.empty();
   throw InputError(
       {.file = file,
-       .key = "first waypoint",
+       .key = planned ? "--start" : "waypoint 0",
        .problem = fmt::format("{} is not in a straight line from the reel {}: {}", pointText(start),
                               pointText(reel),
                               near ? "an obstacle is between them" : "the reel is too far away"),
        .allowed = "a place that a straight tether reaches",
-       .remedy = "begin the path where the vehicle takes off"});
+       .remedy = planned ? "" : "begin the path where the vehicle takes off"},
+      planned ? ExitCode::kUsage : ExitCode::kConfig);
 }
 
 }  // namespace tautline::planning

@@ -325,6 +325,8 @@ TEST(NoContactCells, AreTouchedOnTheirFacesEdgesAndCorners) {
   EXPECT_TRUE(cells.touchedAt(at(map, 2, 2, 1.5)));
   EXPECT_TRUE(cells.touchedAt(at(map, 2.000001, 1.5, 1.5)));
   EXPECT_FALSE(cells.touchedAt(at(map, 2.001, 1.5, 1.5)));
+  EXPECT_TRUE(cells.touchedAt(at(map, 2.1, 2.1, 1.5), 0.1));  // put off the edge
+  EXPECT_FALSE(cells.touchedAt(at(map, 2.2, 2.1, 1.5), 0.1));
   EXPECT_FALSE(cells.touchedAt(at(map, 1, 1, 2.5)));
   EXPECT_FALSE(cells.touchedAt(at(map, -3, 0, 9)));
 }
