@@ -38,6 +38,14 @@ std::string lengthText(const TetherState& state) {
   return fmt::format("{:.3f} … {:.3f}", interval->first, interval->second);
 }
 
+/// What went wrong at a waypoint (as published only).
+std::string flagsText(const TetherState& state) {
+  std::string text;
+  if (state.relaxation_refused) text += "  relaxation refused";
+  if (state.pierces) text += "  tether through an obstacle";
+  return text;
+}
+
 std::string eventText(const ContactEvent& event, const TetherState& state) {
   std::string text =
       fmt::format("{} {}", nameOf(event.kind, kContactChangeNames), rounded(event.position));
@@ -47,6 +55,13 @@ std::string eventText(const ContactEvent& event, const TetherState& state) {
 }
 
 }  // namespace
+
+json publishedTetherJson(const TetherState& state) {
+  json out = tetherJson(state);
+  out["relaxation_refused"] = state.relaxation_refused;
+  out["tether_through_obstacle"] = state.pierces;
+  return out;
+}
 
 json tetherJson(const TetherState& state) {
   json out = {{"tether_length_m", state.length},
@@ -61,6 +76,7 @@ json tetherJson(const TetherState& state) {
     out["events"].push_back({{"kind", nameOf(event.kind, kContactChangeNames)},
                              {"position_m", toJson(event.position)},
                              {"vehicle_m", toJson(event.vehicle)},
+                             {"tether_length_before_m", event.length_before},
                              {"tether_length_m", event.length}});
   }
   return out;
@@ -78,9 +94,7 @@ std::string contactsText(const ContactPlan& plan) {
       out += before + eventText(event, s);
       before = "; ";
     }
-    if (s.relaxation_refused) out += "  relaxation refused";
-    if (s.pierces) out += "  tether through an obstacle";
-    out += "\n";
+    out += flagsText(s) + "\n";
   }
   return out;
 }
@@ -116,9 +130,7 @@ std::string comparisonText(const ContactComparison& comparison) {
     for (const ContactEvent& event : state.events)
       text +=
           fmt::format("  {} {}", nameOf(event.kind, kContactChangeNames), rounded(event.position));
-    if (state.relaxation_refused) text += "  relaxation refused";
-    if (state.pierces) text += "  tether through an obstacle";
-    return text;
+    return text + flagsText(state);
   };
   std::string out =
       fmt::format("{:>8}  {:<60}  {}\n{:>8}  {:<60}  {}\n", "", "as published", "taut string",
@@ -148,10 +160,8 @@ json comparisonJson(const ContactComparison& comparison) {
               {"rows", json::array()}};
   for (const auto& [published, exact] : comparison.rows) {
     json row = {{"position_m", toJson(exact.position)},
-                {"published", tetherJson(published)},
+                {"published", publishedTetherJson(published)},
                 {"exact", tetherJson(exact)}};
-    row["published"]["relaxation_refused"] = published.relaxation_refused;
-    row["published"]["tether_through_obstacle"] = published.pierces;
     out["rows"].push_back(std::move(row));
   }
   return out;

@@ -17,6 +17,10 @@ namespace tautline::planning {
 /// vehicle; `events`.
 [[nodiscard]] nlohmann::json tetherJson(const TetherState& state);
 
+/// The same of the published planner's tether, with `relaxation_refused` and
+/// `tether_through_obstacle`.
+[[nodiscard]] nlohmann::json publishedTetherJson(const TetherState& state);
+
 /// One row a waypoint, its events below it.
 [[nodiscard]] std::string contactsText(const ContactPlan& plan);
 

@@ -23,16 +23,18 @@
 #include "planning_offline/cli/path_file.h"
 #include "planning_offline/cli/terminal_progress.h"
 #include "planning_offline/cli/workspace.h"
+#include "planning_offline/field/reel_place.h"
 #include "planning_offline/picture/contact_picture.h"
 #include "planning_offline/risk/risk_params.h"
 #include "planning_offline/tether/contact_plan.h"
 #include "planning_offline/tether/no_contact.h"
-#include "planning_offline/tether/reel_place.h"
 
 namespace tautline::planning {
 namespace {
 
 using nlohmann::json;
+
+constexpr double kShortestTether = 1e-3;  // [m]
 
 struct Arguments {
   MapArguments map;
@@ -68,8 +70,9 @@ Eigen::Vector3d reelOf(const VoxelMap& map, const GivenPath& path, const std::st
 /// The first place on the way where the tether is beyond a hard limit.
 class LimitCheck {
  public:
-  LimitCheck(const VoxelMap& map, const TetherLimits& limits, std::string file)
-      : no_contact_(map), limits_(limits), file_(std::move(file)) {}
+  /// `standoff`: how far contacts are put off their edges [cells].
+  LimitCheck(const VoxelMap& map, const TetherLimits& limits, double standoff, std::string file)
+      : no_contact_(map), limits_(limits), standoff_(standoff), file_(std::move(file)) {}
 
   /// Throws InputError (refused).
   void check(const ContactPlan& plan) {
@@ -81,7 +84,7 @@ class LimitCheck {
                      ? fmt::format("waypoint {}", i)
                      : fmt::format("on the way to waypoint {}", i);
         checkContacts(event);
-        checkLength(event.length, event.vehicle);
+        checkLength(event.longest(), event.vehicle);
       }
       where_ = fmt::format("waypoint {}", i);
       checkLength(state.length, state.position);
@@ -107,7 +110,7 @@ class LimitCheck {
 
   void checkContacts(const ContactEvent& event) const {
     if (event.kind != ContactChange::kPush) return;
-    if (no_contact_.touchedAt(event.position)) {
+    if (no_contact_.touchedAt(event.position, standoff_)) {
       refuse(fmt::format("the tether touches a forbidden surface at {}", pointText(event.position)),
              "no contact there", "fly round it on the other side");
     }
@@ -119,6 +122,7 @@ class LimitCheck {
 
   NoContactCells no_contact_;
   TetherLimits limits_;
+  double standoff_;
   std::string file_;
   int contacts_{0};
   std::string where_;
@@ -147,15 +151,29 @@ json planJson(const ContactPlan& plan, const VoxelMap& map, const Arguments& arg
     out["tether_through_obstacles"] = piercingStates(plan);
   }
   for (const TetherState& state : plan.states) {
-    json row = tetherJson(state);
+    json row = published ? publishedTetherJson(state) : tetherJson(state);
     row["position_m"] = toJson(state.position);
-    if (published) {
-      row["relaxation_refused"] = state.relaxation_refused;
-      row["tether_through_obstacle"] = state.pierces;
-    }
     out["states"].push_back(std::move(row));
   }
   return out;
+}
+
+/// Throws InputError (refused) for tethers that no mission may carry.
+void needFlyableTether(const ContactPlan& plan) {
+  const auto refuse = [](std::string problem, std::string remedy) {
+    return InputError(
+        {.key = "--output", .problem = std::move(problem), .remedy = std::move(remedy)},
+        ExitCode::kRefused);
+  };
+  if (plan.algorithm == ContactAlgorithm::kAsPublished) {
+    throw refuse("contacts as published stand off the edges that hold the tether: not to be flown",
+                 "--algorithm exact");
+  }
+  if (plan.unresolved_moves > 0) {
+    throw refuse(
+        fmt::format("no tether outside all obstacles was found on {} legs", plan.unresolved_moves),
+        "a way with more distance from obstacles, or shorter legs");
+  }
 }
 
 void writeFiles(const Arguments& arguments, const GivenPath& path, const ContactPlan& plan,
@@ -164,9 +182,8 @@ void writeFiles(const Arguments& arguments, const GivenPath& path, const Contact
   std::optional<Mission> mission;  // made first: what cannot be a mission leaves no file behind
   if (!arguments.output.empty()) {
     mission = missionOf(plan, path.orders, map,
-                        fmt::format("{} with tether contacts, {}",
-                                    std::filesystem::path(arguments.path).filename().string(),
-                                    nameOf(plan.algorithm, kContactAlgorithmNames)),
+                        fmt::format("{} with tether contacts",
+                                    std::filesystem::path(arguments.path).filename().string()),
                         arguments.output);
     validateMission(*mission);
   }
@@ -194,10 +211,8 @@ ExitCode compare(const Arguments& arguments, const GivenPath& path, const VoxelM
 }
 
 ExitCode run(const Arguments& arguments) {
-  for (const auto& [option, value] : {std::pair{"--length-max-m", arguments.limits.length_max},
-                                      std::pair{"--scale", arguments.scale}}) {
-    if (!std::isfinite(value)) throw usage(option, "is not a finite number", "more than 0");
-  }
+  needFinite("--length-max-m", arguments.limits.length_max);
+  needFinite("--scale", arguments.scale);
   TerminalProgress terminal;
   const MapSpace space = loadMapSpace(arguments.map, terminal.progress());
   PathFileOptions options;
@@ -211,7 +226,11 @@ ExitCode run(const Arguments& arguments) {
   needStraightStart(map, *map.reel, path.points.front(), arguments.path);
   if (arguments.compare) return compare(arguments, path, map);
   const ContactPlan plan = planContacts(map, *map.reel, path.points, arguments.options);
-  LimitCheck(map, arguments.limits, arguments.path).check(plan);
+  const bool exact = plan.algorithm == ContactAlgorithm::kExact;
+  LimitCheck(map, arguments.limits, exact ? 0.0 : arguments.options.published.standoff,
+             arguments.path)
+      .check(plan);
+  if (!arguments.output.empty()) needFlyableTether(plan);
   terminal.clear();
   writeFiles(arguments, path, plan, map);
   if (arguments.json) {
@@ -241,11 +260,16 @@ void addContactsCommand(CLI::App& app, ExitCode& result) {
   CLI::Option* both = verb->add_flag("--compare", arguments->compare,
                                      "Both algorithms side by side, where they change");
   verb->add_option("--length-max-m", arguments->limits.length_max, "Tether on the reel")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(kShortestTether, kFarthestMetres))
+      ->excludes(both);
   verb->add_option("--contacts-max", arguments->limits.contacts_max, "Contacts at once")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1000))
+      ->excludes(both);
+  // What only the limits or one algorithm read.
+  for (const char* option : {"--algorithm", "--no-contact"})
+    verb->get_option(option)->excludes(both);
   verb->add_option("--scale", arguments->scale, "Metres per unit of a legacy path")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, kFarthestMetres));
   verb->add_option("--axes", arguments->axes, "Axes of a legacy path, such as yzx");
   verb->add_flag("--json", arguments->json, "Machine-readable output");
   verb->add_option("--csv", arguments->csv, "Write the table of waypoints")

@@ -51,17 +51,32 @@ constexpr const char* kContacts = "contacts";
 constexpr std::array kFieldNames{"distance",    "width",       "visibility",
                                  "locale_risk", kTetherLength, kContacts};
 
-/// The free cell where least-risk paths start; nothing if neither map nor user has one.
-std::optional<CellIndex> pathStart(const FieldsArguments& arguments, const MapSpace& space) {
+/// What is shown, and a word on what is not.
+struct ShownFields {
+  std::vector<NamedField> fields;
+  std::string note;
+};
+
+/// The free cell where least-risk paths start; nothing if neither map nor user has one. Unless the
+/// start is needed, one of the scene that is not free is as good as none.
+std::optional<CellIndex> pathStart(const FieldsArguments& arguments, const MapSpace& space,
+                                   bool needed, std::string& note) {
   const VoxelMap& map = *space.map;
   std::optional<Eigen::Vector3d> start = map.start;
   if (!arguments.start.empty()) start = parsePoint(arguments.start, "--start");
   if (!start) return std::nullopt;
   const CellIndex cell = map.indexAt(*start);
   if (cell != kNoCell && space.lattice->free(cell)) return cell;
+  const std::string problem =
+      fmt::format("{} is not in the free space of the map {}", pointText(*start), map.name);
+  if (arguments.start.empty() && !needed) {
+    note = fmt::format("without {} and {}: start_m of the scene {}", kTetherLength, kContacts,
+                       problem);
+    return std::nullopt;
+  }
   throw InputError({.key = arguments.start.empty() ? "start_m of the scene" : "--start",
-                    .problem = fmt::format("{} is not in the free space of the map {}",
-                                           pointText(*start), map.name)},
+                    .problem = problem,
+                    .remedy = "another --start, or a smaller --clearance"},
                    arguments.start.empty() ? ExitCode::kConfig : ExitCode::kUsage);
 }
 
@@ -78,8 +93,8 @@ void addTetherFields(const RiskSpace& space, CellIndex start, int threads, const
   }
 }
 
-std::vector<NamedField> namedFields(const FieldsArguments& arguments, const RiskSpace& space,
-                                    const Progress& progress) {
+ShownFields shownFields(const FieldsArguments& arguments, const RiskSpace& space,
+                        const Progress& progress) {
   const bool all = arguments.field == "all";
   if (!all &&
       std::find(kFieldNames.begin(), kFieldNames.end(), arguments.field) == kFieldNames.end()) {
@@ -92,15 +107,16 @@ std::vector<NamedField> namedFields(const FieldsArguments& arguments, const Risk
   const auto wide = [](const std::vector<float>& values) {
     return std::vector<double>(values.begin(), values.end());
   };
-  std::vector<NamedField> out{
-      {"distance", "distance to the closest obstacle [m]", wide(fields.distance)},
-      {"width", "narrowest passage E_cd [m]", wide(fields.width)},
-      {"visibility", "mean isovist length [m]", wide(fields.visibility)},
-      {"locale_risk", "locale risk of a state", {}}};
+  ShownFields shown;
+  std::vector<NamedField>& out = shown.fields;
+  out = {{"distance", "distance to the closest obstacle [m]", wide(fields.distance)},
+         {"width", "narrowest passage E_cd [m]", wide(fields.width)},
+         {"visibility", "mean isovist length [m]", wide(fields.visibility)},
+         {"locale_risk", "locale risk of a state", {}}};
   for (const double cost : space.risk->costs().locale)
     out.back().values.push_back(riskOfCost(cost));
   const bool tether = arguments.field == kTetherLength || arguments.field == kContacts;
-  const std::optional<CellIndex> start = pathStart(arguments, space.space);
+  const std::optional<CellIndex> start = pathStart(arguments, space.space, tether, shown.note);
   if (start && space.risk->string() != nullptr && (all || tether)) {
     addTetherFields(space, *start, arguments.risk.map.threads, progress, out);
   } else if (tether) {
@@ -111,7 +127,7 @@ std::vector<NamedField> namedFields(const FieldsArguments& arguments, const Risk
         ExitCode::kUsage);
   }
   std::erase_if(out, [&](const NamedField& f) { return !all && f.name != arguments.field; });
-  return out;
+  return shown;
 }
 
 /// One layer of cells of each field.
@@ -175,12 +191,13 @@ ExitCode runFields(const FieldsArguments& arguments) {
   TerminalProgress terminal;
   const RiskSpace space = loadRiskSpace(arguments.risk, terminal.progress(), true);
   const VoxelMap& map = *space.space.map;
-  const std::vector<NamedField> shown = namedFields(arguments, space, terminal.progress());
+  const auto [shown, note] = shownFields(arguments, space, terminal.progress());
   terminal.clear();
   if (terminal.cancelled()) {
     fmt::print(stderr, "tautline-plan: stopped; the fields would be incomplete\n");
     return ExitCode::kFailed;
   }
+  if (!note.empty() && !arguments.json) fmt::print(stderr, "tautline-plan: {}\n", note);
   if (!arguments.picture.svg.empty()) drawFields(arguments, map, shown);
   if (!arguments.csv.empty()) tabulateFields(arguments, space.space, shown);
   json out = {{"free", space.space.lattice->freeCount()},

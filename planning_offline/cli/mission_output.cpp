@@ -96,7 +96,7 @@ class MissionWriter {
     return InputError({.file = file_,
                        .problem = fmt::format("the plan has more {} than a mission holds", what),
                        .allowed = fmt::format("{}", most),
-                       .remedy = "a shorter path, or a larger --resolution"});
+                       .remedy = "cut the path in two, or plan on a larger --resolution"});
   }
 
   Eigen::Vector3d reel_;

@@ -133,6 +133,7 @@ GivenPath readPath(const std::string& file, const PathFileOptions& options) {
 void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space,
                  const std::string& file) {
   const VoxelMap& map = *space.map;
+  needSightSize(map);
   std::vector<std::uint8_t> blocked;
   for (const std::uint8_t free : space.lattice->freeCells()) blocked.push_back(free != 0 ? 0 : 1);
   const auto cells = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
@@ -142,15 +143,15 @@ void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space
     const CellIndex cell = map.indexAt(path[i]);
     if (cell == kNoCell || !space.lattice->free(cell)) {
       throw InputError({.file = file,
-                        .key = fmt::format("point {}", i),
+                        .key = fmt::format("waypoint {}", i),
                         .problem = fmt::format(
                             "{} is {} the map {}", pointText(path[i]),
                             cell == kNoCell ? "outside" : "not in the free space of", map.name)});
     }
-    if (i > 0 && !lineOfSight(map.shape, blocked, cells(path[i - 1]), cells(path[i]))) {
+    if (i > 0 && !outsideSolids(map.shape, blocked, cells(path[i - 1]), cells(path[i]))) {
       throw InputError(
           {.file = file,
-           .key = fmt::format("points {} to {}", i - 1, i),
+           .key = fmt::format("waypoints {} to {}", i - 1, i),
            .problem = fmt::format("the way from {} to {} leaves the free space of the map {}",
                                   pointText(path[i - 1]), pointText(path[i]), map.name)});
     }
@@ -159,20 +160,23 @@ void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space
 
 void needStraightStart(const VoxelMap& map, const Eigen::Vector3d& reel,
                        const Eigen::Vector3d& start, const std::string& file) {
+  needSightSize(map);
   std::vector<std::uint8_t> blocked;
   for (const CellState state : map.cells) blocked.push_back(state == CellState::kOccupied ? 1 : 0);
   const Eigen::Vector3d from = (reel - map.origin) / map.resolution;
   const Eigen::Vector3d to = (start - map.origin) / map.resolution;
   const bool near = (from.array().abs() <= kSightFarthest).all();
-  if (near && lineOfSight(map.shape, blocked, from, to)) return;
+  if (near && outsideSolids(map.shape, blocked, from, to)) return;
+  const bool planned = file.empty();
   throw InputError(
       {.file = file,
-       .key = "first waypoint",
+       .key = planned ? "--start" : "waypoint 0",
        .problem = fmt::format("{} is not in a straight line from the reel {}: {}", pointText(start),
                               pointText(reel),
                               near ? "an obstacle is between them" : "the reel is too far away"),
        .allowed = "a place that a straight tether reaches",
-       .remedy = "begin the path where the vehicle takes off"});
+       .remedy = planned ? "" : "begin the path where the vehicle takes off"},
+      planned ? ExitCode::kUsage : ExitCode::kConfig);
 }
 
 }  // namespace tautline::planning

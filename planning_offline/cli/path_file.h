@@ -41,13 +41,14 @@ struct PathFileOptions {
 /// legacy file without a reel, is an error of usage.
 [[nodiscard]] GivenPath readPath(const std::string& file, const PathFileOptions& options);
 
-/// Throws InputError for the first point or way between two that is not in free space.
+/// Throws InputError for the first point or way between two that is not in free space
+/// (outsideSolids()), and for maps that are too long to tell (needSightSize()).
 void needFreeWay(const std::vector<Eigen::Vector3d>& path, const MapSpace& space,
                  const std::string& file);
 
 /// Throws InputError if an obstacle is between the reel outlet and where a path begins: the tether
-/// is a straight line when the vehicle takes off. `file` is the path's, empty for one that was
-/// planned.
+/// is a straight line when the vehicle takes off. `file` is the path's; empty for one that is
+/// to be planned: then it is an error of usage about --start.
 void needStraightStart(const VoxelMap& map, const Eigen::Vector3d& reel,
                        const Eigen::Vector3d& start, const std::string& file);
 

@@ -120,6 +120,7 @@ json reachJson(const ReachArguments& arguments, const VoxelMap& map, const Reach
     out["take_off_m"] = {p.x(), p.y(), p.z()};
   }
   if (arguments.lengthLimited()) out["length_max_m"] = arguments.limits.length_max;
+  if (arguments.limits.contacts_max >= 0) out["contacts_max"] = arguments.limits.contacts_max;
   if (arguments.elevationLimited()) out["elevation_min_deg"] = arguments.limits.elevation_min;
   return out;
 }
@@ -145,6 +146,9 @@ void drawReach(const ReachArguments& arguments, const VoxelMap& map, const Reach
 }
 
 ExitCode runReach(const ReachArguments& arguments) {
+  needFinite("--length-max-m", arguments.limits.length_max);
+  needFinite("--elevation-min-deg", arguments.limits.elevation_min);
+  needFinite("--tether-clearance", arguments.tether_clearance);
   TerminalProgress terminal;
   const MapSpace space = loadMapSpace(arguments.map, terminal.progress());
   const VoxelMap& map = *space.map;
@@ -154,8 +158,7 @@ ExitCode runReach(const ReachArguments& arguments) {
                       .allowed = "x,y,z in metres"},
                      ExitCode::kUsage);
   }
-  const ReachOptions options{.length_max = arguments.limits.length_max,
-                             .elevation_min = arguments.limits.elevation_min,
+  const ReachOptions options{.limits = arguments.limits,
                              .tether_clearance = arguments.tether_clearance,
                              .threads = arguments.map.threads};
   const ReachMap reach =
@@ -190,7 +193,7 @@ void addReachCommand(CLI::App& app, ExitCode& result) {
   arguments->map.addTo(*verb);
   verb->add_option("--length-max-m", arguments->limits.length_max,
                    "Also count what is within this tether length; 0 = not")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, kFarthestMetres));
   verb->add_option("--elevation-min-deg", arguments->limits.elevation_min,
                    "Also count what is at least this high, seen from the active anchor")
       ->check(CLI::Range(-90.0, 90.0));
@@ -199,7 +202,7 @@ void addReachCommand(CLI::App& app, ExitCode& result) {
       ->check(CLI::Range(0, 1000));
   verb->add_option("--tether-clearance", arguments->tether_clearance,
                    "Distance that the straight tether keeps from obstacles [m]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, kFarthestMetres))
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "Machine-readable output");
   arguments->picture.addTo(*verb);

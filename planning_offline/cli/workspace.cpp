@@ -175,6 +175,10 @@ InputError usage(const char* option, std::string problem, std::string allowed, s
                     ExitCode::kUsage);
 }
 
+void needFinite(const char* option, double value) {
+  if (!std::isfinite(value)) throw usage(option, "is not a finite number");
+}
+
 std::string pointText(const Eigen::Vector3d& p) {
   return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z());
 }
@@ -189,11 +193,11 @@ void MapArguments::addTo(CLI::App& verb) {
       ->required()
       ->type_name("FILE");
   verb.add_option("--resolution", resolution, "Edge of a cell [m]; default: the file's own")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-4, kFarthestMetres));
   verb.add_option("--crop", crop, "Keep only this box: x0,y0,z0,x1,y1,z1 [m]");
   verb.add_option("--slice", slice, "Plan in the plane at this height y [m]");
   verb.add_option("--clearance", clearance, "Vehicle radius + tolerance kept from obstacles [m]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, kFarthestMetres));
   verb.add_flag("--unknown-free", unknown_is_free, "Unknown space may be flown through");
   addChoice(verb, "--connectivity", connectivity, kConnectivityNames,
             "Moves over faces (6; 4 in the plane), edges (18; 8) or vertices (26; 8)");
@@ -206,18 +210,16 @@ void MapArguments::addTo(CLI::App& verb) {
       ->expected(1)
       ->take_all();
   verb.add_option("--memory-mb", memory_mb, "Largest map [MB]")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();
   verb.add_option("--threads", threads, "0 = all cores")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 4096))
       ->capture_default_str();
 }
 
 MapSpace loadMapSpace(const MapArguments& arguments, const Progress& progress) {
-  for (const auto& [option, value] : {std::pair{"--resolution", arguments.resolution},
-                                      std::pair{"--clearance", arguments.clearance}}) {
-    if (!std::isfinite(value)) throw usage(option, "is not a number", "metres");
-  }
+  needFinite("--resolution", arguments.resolution);
+  needFinite("--clearance", arguments.clearance);
   LoadOptions options;
   if (arguments.resolution > 0.0) options.resolution = arguments.resolution;
   if (!arguments.crop.empty()) options.crop = parseBox(arguments.crop, "--crop");

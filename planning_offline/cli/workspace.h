@@ -36,6 +36,13 @@ namespace tautline::planning {
 [[nodiscard]] InputError usage(const char* option, std::string problem, std::string allowed = {},
                                std::string remedy = {});
 
+/// Throws InputError (usage) that names the option unless its value is finite: CLI::Range lets NaN
+/// pass.
+void needFinite(const char* option, double value);
+
+/// Largest length that an option takes [m].
+inline constexpr double kFarthestMetres = 1e6;
+
 /// An option whose value is one of `names`; its default is the value that is there.
 template <class Enum, std::size_t N>
 void addChoice(CLI::App& verb, const char* option, Enum& value,

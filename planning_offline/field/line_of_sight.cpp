@@ -1,7 +1,9 @@
 #include "planning_offline/field/line_of_sight.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+
+#include <fmt/core.h>
 
 #include "common/error.h"
 
@@ -10,6 +12,7 @@ namespace {
 
 constexpr std::int64_t kUnits = 65536;  // of a cell
 constexpr double kLargest = 16384.0;    // cells: products of two lengths fit 63 bits
+static_assert(kLargest == kSightFarthest);
 static_assert(kSightUnit * static_cast<double>(kUnits) == 1.0);
 
 /// One axis of the walk. Lengths in units.
@@ -19,7 +22,7 @@ struct Axis {
   std::int64_t crossings{0};  // planes strictly inside the line
   int cell{0};                // that the line starts in or enters first
   int sign{1};
-  bool in_plane{false};  // lies between two layers of cells: inside no cell at all
+  bool in_plane{false};  // lies between two layers of cells, `cell` and the one below it
   bool inside{false};    // of the grid
 };
 
@@ -42,14 +45,22 @@ Axis axisOf(double from, double to, int cells) noexcept {
   return axis;
 }
 
+/// Of any cell; there is nothing outside the grid.
+bool blockedIn(const GridShape& shape, std::span<const std::uint8_t> blocked,
+               const Eigen::Vector3i& cell) noexcept {
+  return shape.contains(cell) && blocked[static_cast<std::size_t>(shape.index(cell))] != 0;
+}
+
 /// Which of two axes meets its next plane first: negative the first, zero both at once.
 std::int64_t order(const Axis& a, const Axis& b) noexcept {
   return a.to_plane * b.length - b.to_plane * a.length;
 }
 
-template <bool kInside>
-bool walk(const GridShape& shape, const std::uint8_t* blocked, const Axis& x, const Axis& y,
-          const Axis& z) noexcept {
+/// True if blockedAt(index or cell) is false all along the line. kInside: cells by their index, for
+/// a line that stays on the grid.
+template <bool kInside, class BlockedAt>
+bool walk(const GridShape& shape, const Axis& x, const Axis& y, const Axis& z,
+          const BlockedAt& blockedAt) noexcept {
   std::int64_t xy = order(x, y);
   std::int64_t xz = order(x, z);
   std::int64_t yz = order(y, z);
@@ -63,7 +74,7 @@ bool walk(const GridShape& shape, const std::uint8_t* blocked, const Axis& x, co
     const std::int64_t step_y = std::int64_t{y.sign} * shape.nx;
     const std::int64_t step_z = std::int64_t{z.sign} * shape.nx * shape.ny;
     std::int64_t i = shape.index({x.cell, y.cell, z.cell});
-    while (blocked[i] == 0) {
+    while (!blockedAt(i)) {
       if (left <= 0) return true;
       const std::int64_t on_x = -std::int64_t{(xy <= 0) & (xz <= 0)};
       const std::int64_t on_y = -std::int64_t{(xy >= 0) & (yz <= 0)};
@@ -77,7 +88,7 @@ bool walk(const GridShape& shape, const std::uint8_t* blocked, const Axis& x, co
     return false;
   } else {
     Eigen::Vector3i cell(x.cell, y.cell, z.cell);
-    while (!shape.contains(cell) || blocked[shape.index(cell)] == 0) {
+    while (!blockedAt(cell)) {
       if (left <= 0) return true;
       const bool on_x = xy <= 0 && xz <= 0;
       const bool on_y = xy >= 0 && yz <= 0;
@@ -100,8 +111,40 @@ bool lineOfSight(const GridShape& shape, std::span<const std::uint8_t> blocked,
   const Axis y = axisOf(a.y(), b.y(), shape.ny);
   const Axis z = axisOf(a.z(), b.z(), shape.nz);
   if (x.in_plane || y.in_plane || z.in_plane) return true;
-  return x.inside && y.inside && z.inside ? walk<true>(shape, blocked.data(), x, y, z)
-                                          : walk<false>(shape, blocked.data(), x, y, z);
+  if (x.inside && y.inside && z.inside) {
+    return walk<true>(shape, x, y, z, [at = blocked.data()](std::int64_t i) { return at[i] != 0; });
+  }
+  return walk<false>(shape, x, y, z,
+                     [&](const Eigen::Vector3i& cell) { return blockedIn(shape, blocked, cell); });
+}
+
+bool outsideSolids(const GridShape& shape, std::span<const std::uint8_t> blocked,
+                   const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
+  const Axis x = axisOf(a.x(), b.x(), shape.nx);
+  const Axis y = axisOf(a.y(), b.y(), shape.ny);
+  const Axis z = axisOf(a.z(), b.z(), shape.nz);
+  // Between layers a place is inside a solid where the cells on all sides of it are.
+  const Eigen::Vector3i below(int{x.in_plane}, int{y.in_plane}, int{z.in_plane});
+  return walk<false>(shape, x, y, z, [&](const Eigen::Vector3i& cell) {
+    for (int dz = 0; dz <= below.z(); ++dz) {
+      for (int dy = 0; dy <= below.y(); ++dy) {
+        for (int dx = 0; dx <= below.x(); ++dx) {
+          if (!blockedIn(shape, blocked, cell - Eigen::Vector3i(dx, dy, dz))) return false;
+        }
+      }
+    }
+    return true;
+  });
+}
+
+void needSightSize(const VoxelMap& map) {
+  const GridShape& shape = map.shape;
+  if (std::max({shape.nx, shape.ny, shape.nz}) <= static_cast<int>(kSightFarthest)) return;
+  throw InputError(
+      {.file = map.file,
+       .problem = fmt::format("is {} x {} x {} cells", shape.nx, shape.ny, shape.nz),
+       .allowed = fmt::format("at most {:g} along an axis for lines of sight", kSightFarthest),
+       .remedy = "a larger --resolution, or a --crop"});
 }
 
 }  // namespace tautline::planning

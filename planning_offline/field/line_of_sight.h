@@ -21,10 +21,20 @@ inline constexpr double kSightUnit = 1.0 / 65536.0;
 inline constexpr double kSightFarthest = 16384.0;
 
 /// True if the straight line between two points meets the interior of no blocked cell. Touching
-/// faces, edges or corners is free. Cells outside the grid do not block. Points in cell units:
-/// (p_M − origin) / resolution, components within ±kSightFarthest. `blocked`: one byte a cell, 0 =
-/// free.
+/// faces, edges or corners is free, also with blocked cells on all sides of the line. Cells outside
+/// the grid do not block. Points in cell units: (p_M − origin) / resolution, components within
+/// ±kSightFarthest. `blocked`: one byte a cell, 0 = free.
 [[nodiscard]] bool lineOfSight(const GridShape& shape, std::span<const std::uint8_t> blocked,
                                const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept;
+
+/// True if the straight line meets no interior of a solid, all blocked cells taken as one: unlike
+/// for lineOfSight(), a line between two blocked cells is inside, one along the outer face of a
+/// block is free. For ways that something real goes. Arguments as there; a line may be a point.
+[[nodiscard]] bool outsideSolids(const GridShape& shape, std::span<const std::uint8_t> blocked,
+                                 const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept;
+
+/// Throws InputError if the map is longer than kSightFarthest along an axis: lines between its
+/// cells would be outside the domain of the two above.
+void needSightSize(const VoxelMap& map);
 
 }  // namespace tautline::planning

@@ -1,12 +1,7 @@
 #include "planning_offline/field/reach.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
-#include <numbers>
-
-#include <fmt/format.h>
 
 #include "common/error.h"
 #include "planning_offline/field/distance_field.h"
@@ -14,6 +9,7 @@
 #include "planning_offline/field/line_of_sight.h"
 #include "planning_offline/field/obstacles.h"
 #include "planning_offline/field/parallel.h"
+#include "planning_offline/field/reel_place.h"
 
 namespace tautline::planning {
 namespace {
@@ -31,16 +27,13 @@ std::vector<std::uint8_t> tetherObstacles(const VoxelMap& map, const ReachOption
 }
 
 /// Which of the cells that a straight tether reaches are within the limits.
-void countWithinLimits(const VoxelMap& map, const Eigen::Vector3d& reel,
-                       const ReachOptions& options, ReachMap& reach) {
+void countWithinLimits(const VoxelMap& map, const Eigen::Vector3d& reel, const TetherLimits& limits,
+                       ReachMap& reach) {
   for (std::size_t n = 0; n < reach.straight.size(); ++n) {
     if (reach.straight[n] == 0) continue;
-    const Eigen::Vector3d way = map.centre(static_cast<CellIndex>(n)) - reel;
-    const bool short_enough = options.length_max <= 0.0 || way.norm() <= options.length_max;
-    const bool high_enough =
-        options.elevation_min <= -90.0 ||
-        std::atan2(way.y(), std::hypot(way.x(), way.z())) * 180.0 / std::numbers::pi >=
-            options.elevation_min;
+    const Eigen::Vector3d vehicle = map.centre(static_cast<CellIndex>(n));
+    const bool short_enough = limits.allowsLength((vehicle - reel).norm());
+    const bool high_enough = limits.allowsElevation(reel, vehicle);
     reach.straight_within_length += short_enough ? 1U : 0U;
     reach.straight_within_elevation += high_enough ? 1U : 0U;
     reach.straight_within_limits += short_enough && high_enough ? 1U : 0U;
@@ -100,24 +93,14 @@ ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                       const Progress& progress) {
   const GridShape& shape = map.shape;
   TAUTLINE_CHECK(free.size() == shape.size());
+  needSightSize(map);
   const std::vector<std::uint8_t> obstacles = tetherObstacles(map, options, progress);
-  const Eigen::Vector3d reel_cells = (reel - map.origin) / map.resolution;
-  if (!(reel_cells.cwiseAbs().maxCoeff() <= kSightFarthest)) {
-    throw InputError(
-        {.file = map.file,
-         .key = "reel",
-         .problem = fmt::format("({:g}, {:g}, {:g}) m is too far from the map", reel.x(), reel.y(),
-                                reel.z()),
-         .allowed = fmt::format("within {:g} m of its corner", kSightFarthest * map.resolution)});
-  }
-  if (!progress.cancelled() && !lineOfSight(shape, obstacles, reel_cells, reel_cells)) {
-    throw InputError({.file = map.file,
-                      .key = "reel",
-                      .problem = fmt::format("({:.3f}, {:.3f}, {:.3f}) m is inside an obstacle",
-                                             reel.x(), reel.y(), reel.z()),
-                      .allowed = "a place outside all occupied cells and their tether clearance",
-                      .remedy = "move the reel, or lower the tether clearance"});
-  }
+  // A cancelled inflation says nothing about the reel.
+  const std::span<const std::uint8_t> kept_out =
+      progress.cancelled() ? std::span<const std::uint8_t>{} : obstacles;
+  const Eigen::Vector3d reel_cells =
+      (checkedReel(map, reel, {.farthest = kSightFarthest, .blocked = kept_out}) - map.origin) /
+      map.resolution;
 
   ReachMap reach;
   reach.straight.resize(shape.size(), 0);
@@ -136,7 +119,7 @@ ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                                                   : connectedTo(shape, free, reach.take_off);
   reach.free = countOf(free);
   reach.straight_count = countOf(reach.straight);
-  countWithinLimits(map, reel, options, reach);
+  countWithinLimits(map, reel, options.limits, reach);
   reach.with_contacts_count = countOf(reach.with_contacts);
   return reach;
 }

@@ -11,14 +11,14 @@
 
 #include <Eigen/Core>
 
+#include "planning_offline/field/tether_limits.h"
 #include "planning_offline/map/voxel_map.h"
 #include "planning_offline/progress.h"
 
 namespace tautline::planning {
 
 struct ReachOptions {
-  double length_max{0.0};        ///< Of the tether [m]; 0 = no limit.
-  double elevation_min{-90.0};   ///< Of a straight tether, seen from the reel [deg].
+  TetherLimits limits{};         ///< Length and elevation: what is within them is counted.
   double tether_clearance{0.0};  ///< The tether also keeps out of cells whose centre is nearer to
                                  ///< an occupied cell than this [m]; the published figure inflates
                                  ///< obstacles by one cell, and the tether by them.
@@ -35,14 +35,15 @@ struct ReachMap {
                                 ///< a straight tether reaches; kNoCell if it reaches none.
   std::size_t free{0};
   std::size_t straight_count{0};
-  std::size_t straight_within_length{0};     ///< Of these, by length_max alone,
-  std::size_t straight_within_elevation{0};  ///< by elevation_min alone,
+  std::size_t straight_within_length{0};     ///< Of these, by the length alone,
+  std::size_t straight_within_elevation{0};  ///< by the elevation alone,
   std::size_t straight_within_limits{0};     ///< by both.
   std::size_t with_contacts_count{0};
 };
 
 /// `free` as freeSpace() gives it; obstacles for the tether are the map's occupied cells. The reel
-/// [m, M] may lie outside the map. Throws InputError if it is inside an obstacle or its clearance.
+/// [m, M] may lie outside the map. Throws InputError if it is inside an obstacle or its clearance
+/// (checkedReel()), or if it or the map's end is farther than kSightFarthest cells from the origin.
 /// When cancelled, cells that were not looked at yet count as not reached.
 [[nodiscard]] ReachMap computeReach(const VoxelMap& map, std::span<const std::uint8_t> free,
                                     const Eigen::Vector3d& reel, const ReachOptions& options,

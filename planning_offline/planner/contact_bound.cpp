@@ -15,6 +15,7 @@ constexpr std::size_t kTests = 3'000'000;  // tests of lines, about 0.2 s
 
 ContactBound::ContactBound(const VoxelMap& map, const Eigen::Vector3d& reel)
     : map_(&map), known_(map.shape.size(), -1), tests_left_(kTests) {
+  needSightSize(map);
   occupied_.reserve(map.shape.size());
   for (const CellState state : map.cells) {
     occupied_.push_back(state == CellState::kOccupied ? 1 : 0);

@@ -19,7 +19,7 @@ namespace tautline::planning {
 /// more than whether there is one: contacts there may lie anywhere on an edge.
 class ContactBound {
  public:
-  /// `map` must outlive it.
+  /// `map` must outlive it. Throws InputError for maps that are too long (needSightSize()).
   ContactBound(const VoxelMap& map, const Eigen::Vector3d& reel);
 
   [[nodiscard]] int at(CellIndex cell);

@@ -6,10 +6,11 @@
 /// only.
 ///
 /// The tether depends on the path flown, and there is no end of paths. A cell counts here by at
-/// most two of them: the shortest way on the lattice from where the vehicle takes off, and the
-/// shortest one through cells that a straight tether reaches. Limits hold in every state of the
-/// way. So whatever counts can be flown, and other paths may reach more: an inner bound. The outer
-/// bounds are beside it.
+/// most three kinds of them: the shortest way on the lattice from where the vehicle takes off, the
+/// shortest one through cells that a straight tether reaches, and the shortest one through those
+/// whose straight tether is within the limits, from the nearest of them. Limits hold in every state
+/// of the way, and none touches a forbidden surface (VoxelMap::no_contact). So whatever counts can
+/// be flown, and other paths may reach more: an inner bound. The outer bounds are beside it.
 
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +41,7 @@ struct TetherReach {
   /// outer bound is that of contact_bound.h: in the plane good, in space good for k = 0 only.
   std::vector<ReachBounds> with_at_most;
   /// One a cell: the most contacts in a state of the way, of that way which needs fewer; −1 where
-  /// no way leads.
+  /// no way leads, or none off the forbidden surfaces.
   std::vector<std::int32_t> contacts;
   bool complete{false};  ///< False if cancelled: the counts then mean nothing.
 };

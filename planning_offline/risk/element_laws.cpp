@@ -136,9 +136,4 @@ double accessCost(const RiskParams& params, double lost) {
   return std::min(params.access.per_unit * lost, costOfRisk(params.cap));
 }
 
-double elevationOf(const Eigen::Vector3d& anchor, const Eigen::Vector3d& position) {
-  const Eigen::Vector3d d = position - anchor;
-  return std::atan2(d.y(), std::hypot(d.x(), d.z()));
-}
-
 }  // namespace tautline::planning

@@ -53,7 +53,4 @@ namespace tautline::planning {
 /// Rate mode: per_unit · lost, so that it does not matter in how many steps it is lost.
 [[nodiscard]] double accessCost(const RiskParams& params, double lost);
 
-/// Elevation of `position` seen from `anchor` [rad]; 0 if they are the same point.
-[[nodiscard]] double elevationOf(const Eigen::Vector3d& anchor, const Eigen::Vector3d& position);
-
 }  // namespace tautline::planning

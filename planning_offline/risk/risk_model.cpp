@@ -229,9 +229,7 @@ double RiskModel::startShare(double cost) const noexcept {
 
 bool RiskModel::elevationAllowed(const Eigen::Vector3d& anchor,
                                  const Eigen::Vector3d& position) const noexcept {
-  const double least = params_.tether_limits.elevation_min;
-  return least <= -90.0 || position == anchor ||
-         elevationOf(anchor, position) >= least * std::numbers::pi / 180.0;
+  return params_.tether_limits.allowsElevation(anchor, position);
 }
 
 BrokenLimits RiskModel::brokenLimits(StackId stack, const Eigen::Vector3d& position) const {

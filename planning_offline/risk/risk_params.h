@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "common/fields.h"
+#include "planning_offline/field/tether_limits.h"
 #include "planning_offline/risk/risk_element.h"
 
 namespace tautline::planning {
@@ -220,32 +221,6 @@ struct BatteryParams {
             "metres of level flight that a metre of climb adds");
   }
   void validate() const;
-};
-
-/// Hard gates of the tether. The planners that know the tether never go beyond them; a path that
-/// does has risk 1. The map has one more: cells that the tether must not touch
-/// (VoxelMap::no_contact).
-struct TetherLimits {
-  double length_max{0.0};
-  int contacts_max{-1};
-  double elevation_min{-90.0};
-
-  /// Whether so much taut tether [m] is within the limit, up to rounding.
-  [[nodiscard]] bool allowsLength(double length) const noexcept {
-    constexpr double kSlack = 1e-9;
-    return length_max <= 0.0 || length <= length_max + kSlack;
-  }
-  [[nodiscard]] bool allowsContacts(int contacts) const noexcept {
-    return contacts_max < 0 || contacts <= contacts_max;
-  }
-
-  template <class Visitor>
-  void fields(Visitor& v) {
-    v.field("length_max_m", length_max, Range{0.0, 1000.0}, "tether on the reel; 0 = no limit");
-    v.field("contacts_max", contacts_max, Range{-1, 64}, "-1 = no limit");
-    v.field("elevation_min_deg", elevation_min, Range{-90.0, 90.0},
-            "of the vehicle seen from the active anchor");
-  }
 };
 
 struct RiskParams {

@@ -66,7 +66,8 @@ class LeastRiskTree {
                                                                CellIndex start, int threads,
                                                                const Progress& progress);
 
-/// The one to use: exact arithmetic up to a few hundred thousand components, the fast one above.
+/// The one to use; lattice and risk must outlive the tree of any of the three. Exact arithmetic up
+/// to a few hundred thousand components, the fast one above.
 [[nodiscard]] std::unique_ptr<LeastRiskTree> leastRiskTree(const Lattice& lattice,
                                                            const RiskModel& risk, CellIndex start,
                                                            int threads, const Progress& progress);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "common/error.h"
 #include "planning_offline/search/components.h"
@@ -12,14 +13,25 @@ namespace {
 constexpr std::size_t kAskEvery = 4096;  // cells between two looks at Progress
 constexpr const char* kWhat = "tether along the paths";
 
+constexpr std::size_t kMost = std::size_t{1} << 27;  // components, for Tethered::next
+
+InputError tooMany(const VoxelMap& map, const char* what) {
+  return InputError(
+      {.file = map.file,
+       .problem = std::string("has too many ") + what + " for tethers along all paths",
+       .allowed = "fewer than " + std::to_string(kMost),
+       .remedy = "a larger --resolution, or a --crop"});
+}
+
 /// Of a component on the way of some path.
 struct Tethered {
   StackId stack{kStraight};
   std::uint32_t next : 27 {0};     ///< Another component of the same cell; 0 = none.
   std::uint32_t incoming : 5 {0};  ///< Direction, or kNoDirection.
-  std::uint32_t contacts_most : 30 {0};
+  std::uint32_t contacts_most : 29 {0};
   std::uint32_t length_allowed : 1 {1};
   std::uint32_t elevation_allowed : 1 {1};
+  std::uint32_t contact_allowed : 1 {1};
 };
 static_assert(sizeof(Tethered) == 12);
 
@@ -69,8 +81,7 @@ std::uint32_t TetherWalk::find(const WalkEnd& end) const {
 }
 
 std::uint32_t TetherWalk::add(const WalkEnd& end, Tethered tether) {
-  constexpr std::size_t kMost = std::size_t{1} << 27;
-  TAUTLINE_CHECK(known_.size() < kMost);
+  if (known_.size() >= kMost) throw tooMany(risk_.map(), "states of paths");
   std::uint32_t& first = first_[static_cast<std::size_t>(end.cell)];
   tether.incoming = static_cast<std::uint32_t>(end.incoming) & 31U;
   tether.next = first & (kMost - 1);
@@ -81,15 +92,16 @@ std::uint32_t TetherWalk::add(const WalkEnd& end, Tethered tether) {
 
 Tethered TetherWalk::moved(const Tethered& from, const Eigen::Vector3d& p,
                            const Eigen::Vector3d& q) {
-  const TetherLimits& limits = risk_.params().tether_limits;
+  constexpr std::uint32_t kMostContacts = (1U << 29U) - 1U;
   Tethered to = from;
   to.stack = string_.move(from.stack, p, q);
   const auto contacts = static_cast<std::uint32_t>(string_.contactCount(to.stack));
-  if (contacts > to.contacts_most) to.contacts_most = contacts & ((1U << 30U) - 1U);
-  if (limits.length_max > 0.0 && string_.length(to.stack, q) > limits.length_max) {
+  if (contacts > to.contacts_most) to.contacts_most = contacts & kMostContacts;
+  if (!risk_.params().tether_limits.allowsLength(string_.length(to.stack, q))) {
     to.length_allowed = 0;
   }
   if (!risk_.elevationAllowed(string_.anchor(to.stack), q)) to.elevation_allowed = 0;
+  if (string_.touchesForbidden(to.stack)) to.contact_allowed = 0;
   return to;
 }
 
@@ -119,6 +131,7 @@ std::uint32_t TetherWalk::at(CellIndex cell) {
 PathTethers tethersOfPaths(const Lattice& lattice, const RiskModel& risk, const LeastRiskTree& tree,
                            const Progress& progress) {
   TAUTLINE_CHECK(risk.string() != nullptr);
+  if (lattice.freeCount() >= kMost) throw tooMany(risk.map(), "free cells");
   const TautString& string = *risk.string();
   const std::size_t cells = lattice.shape().size();
   PathTethers out;
@@ -127,6 +140,7 @@ PathTethers tethersOfPaths(const Lattice& lattice, const RiskModel& risk, const 
   out.contacts_most.assign(cells, -1);
   out.length_allowed.assign(cells, 0);
   out.elevation_allowed.assign(cells, 0);
+  out.contact_allowed.assign(cells, 0);
   TetherWalk walk(lattice, risk, tree);
   bool cancelled = false;
   for (std::size_t i = 0; i < cells && !cancelled; ++i) {
@@ -144,6 +158,7 @@ PathTethers tethersOfPaths(const Lattice& lattice, const RiskModel& risk, const 
     out.contacts_most[i] = static_cast<std::int32_t>(tether.contacts_most);
     out.length_allowed[i] = tether.length_allowed;
     out.elevation_allowed[i] = tether.elevation_allowed;
+    out.contact_allowed[i] = tether.contact_allowed;
   }
   out.moves = walk.moves();
   out.bytes = walk.bytes();

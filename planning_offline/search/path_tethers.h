@@ -25,6 +25,8 @@ struct PathTethers {
   /// seen from the active anchor (RiskParams::tether_limits); 0.
   std::vector<std::uint8_t> length_allowed;
   std::vector<std::uint8_t> elevation_allowed;
+  /// Whether the tether touches no forbidden surface in any state (VoxelMap::no_contact); 0.
+  std::vector<std::uint8_t> contact_allowed;
   std::size_t moves{0};  ///< Of the string: components that the paths go through.
   std::size_t bytes{0};  ///< Held at most besides the tree, the string and this result.
   bool complete{false};  ///< False if cancelled: cells not come to are as without a path.
@@ -35,6 +37,8 @@ struct PathTethers {
 /// (Another string in space may differ by its interning, some 1e-9 of a cell: docs/taut_string.md.)
 /// `risk` has a string, and is the model that `lattice` and `tree` belong to. Stacks are interned
 /// in that string and stay there. 4 bytes a cell and 12 a component, while it runs.
+/// Throws InputError if the lattice has 2^27 free cells or more, before anything is walked, or the
+/// paths go through so many components.
 [[nodiscard]] PathTethers tethersOfPaths(const Lattice& lattice, const RiskModel& risk,
                                          const LeastRiskTree& tree, const Progress& progress);
 

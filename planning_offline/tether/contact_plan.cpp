@@ -53,24 +53,26 @@ class StackLog {
 
   void changeTo(const Points& contacts, const Eigen::Vector3d& vehicle) {
     const std::size_t kept = commonPart(contacts_, contacts, tolerance_);
+    double before = lengthAlong(reel_, contacts_, vehicle);
+    const auto add = [&](ContactChange kind, const Eigen::Vector3d& contact) {
+      const double length = lengthAlong(reel_, contacts_, vehicle);
+      events_.push_back({kind, contact, vehicle, before, length});
+      before = length;
+    };
     while (contacts_.size() > kept) {
       const Eigen::Vector3d contact = contacts_.back();
       contacts_.pop_back();
-      add(ContactChange::kPop, contact, vehicle);
+      add(ContactChange::kPop, contact);
     }
     for (std::size_t i = kept; i < contacts.size(); ++i) {
       contacts_.push_back(contacts[i]);
-      add(ContactChange::kPush, contacts[i], vehicle);
+      add(ContactChange::kPush, contacts[i]);
     }
   }
 
   [[nodiscard]] std::vector<ContactEvent> take() { return std::exchange(events_, {}); }
 
  private:
-  void add(ContactChange kind, const Eigen::Vector3d& contact, const Eigen::Vector3d& vehicle) {
-    events_.push_back({kind, contact, vehicle, lengthAlong(reel_, contacts_, vehicle)});
-  }
-
   Eigen::Vector3d reel_;
   double tolerance_;
   Points contacts_;
@@ -228,7 +230,7 @@ double longestTether(const ContactPlan& plan) {
   double longest = 0.0;
   for (const TetherState& state : plan.states) {
     longest = std::max(longest, state.length);
-    for (const ContactEvent& event : state.events) longest = std::max(longest, event.length);
+    for (const ContactEvent& event : state.events) longest = std::max(longest, event.longest());
   }
   return longest;
 }

@@ -4,6 +4,7 @@
 /// A waypoint path with its tether: contacts, length, and where on the way contacts form and come
 /// off. All points in M [m]. Not real-time safe: offline only.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -34,7 +35,13 @@ struct ContactEvent {
   ContactChange kind{ContactChange::kPush};
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  ///< Of the contact.
   Eigen::Vector3d vehicle{Eigen::Vector3d::Zero()};   ///< Where the vehicle is when it happens.
-  double length{0.0};                                 ///< Taut tether then, after the event [m].
+  /// Taut tether then, before and after the event [m]. A pinned contact that comes off in space can
+  /// shorten it at once: friction held it.
+  double length_before{0.0};
+  double length{0.0};
+
+  /// What the reel must have given for the event to come about [m].
+  [[nodiscard]] double longest() const noexcept { return std::max(length_before, length); }
 };
 
 /// The tether when the vehicle is at a waypoint.
@@ -75,7 +82,8 @@ struct ContactOptions {
                                        std::span<const Eigen::Vector3d> path,
                                        const ContactOptions& options = {});
 
-/// Longest taut tether on the way [m]: between events the length is greatest at an end.
+/// Longest taut tether on the way [m]: between events, each counted with the lengths before and
+/// after it, the length is greatest at an end.
 [[nodiscard]] double longestTether(const ContactPlan& plan);
 
 [[nodiscard]] int countEvents(const ContactPlan& plan, ContactChange kind);

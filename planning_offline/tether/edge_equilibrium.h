@@ -2,8 +2,8 @@
 
 /// @file
 /// Where a string that bends round given edges comes to rest: the shortest line from one end over
-/// one point of each edge to the other end. A convex problem: there is one answer. Not real-time
-/// safe: offline only.
+/// one point of each edge to the other end. A convex problem: there is one answer. All lengths in
+/// cells. Not real-time safe: offline only.
 
 #include <span>
 #include <vector>
@@ -21,7 +21,8 @@ struct SlidingPoint {
 };
 
 /// Moves each point along its stretch to where the line a – points – b is shortest, to about 1e-9
-/// of its length.
+/// of its length. At most 60 Newton steps, each of which makes the line no longer: where they do
+/// not suffice the points stay where the last one left them, on their stretches.
 void findEquilibrium(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                      std::span<SlidingPoint> points);
 

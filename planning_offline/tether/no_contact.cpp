@@ -8,12 +8,13 @@ NoContactCells::NoContactCells(const VoxelMap& map)
       origin_(map.origin),
       marked_(map.no_contact) {}
 
-bool NoContactCells::touchedAt(const Eigen::Vector3d& contact) const noexcept {
+bool NoContactCells::touchedAt(const Eigen::Vector3d& contact, double standoff) const noexcept {
   if (empty()) return false;
-  constexpr double kTouching = 1e-5;  // [cells]
+  constexpr double kRounding = 1e-5;  // [cells]
+  const double touching = standoff + kRounding;
   const Eigen::Array3d at = ((contact - origin_) / resolution_).array();
-  const Eigen::Vector3i low = (at - kTouching).floor().cast<int>();
-  const Eigen::Vector3i high = (at + kTouching).floor().cast<int>();
+  const Eigen::Vector3i low = (at - touching).floor().cast<int>();
+  const Eigen::Vector3i high = (at + touching).floor().cast<int>();
   for (int z = low.z(); z <= high.z(); ++z) {
     for (int y = low.y(); y <= high.y(); ++y) {
       for (int x = low.x(); x <= high.x(); ++x) {

@@ -23,9 +23,11 @@ class NoContactCells {
 
   [[nodiscard]] bool empty() const noexcept { return marked_.empty(); }
 
-  /// True if the closed cube of a marked cell holds the contact, in M [m]. What is nearer than
-  /// 1e-5 of a cell counts as touching: contacts stop that near to the end of an edge.
-  [[nodiscard]] bool touchedAt(const Eigen::Vector3d& contact) const noexcept;
+  /// True if the closed cube of a marked cell holds the contact, in M [m]. What is not farther from
+  /// it along any axis than `standoff` [cells, 0 to 0.5] and 1e-5 of a cell counts as touching:
+  /// contacts stop that near to the end of an edge.
+  [[nodiscard]] bool touchedAt(const Eigen::Vector3d& contact,
+                               double standoff = 0.0) const noexcept;
 
  private:
   GridShape shape_;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/error.h"
-#include "planning_offline/tether/reel_place.h"
+#include "planning_offline/field/reel_place.h"
 
 namespace tautline::planning {
 namespace {

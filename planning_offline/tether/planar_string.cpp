@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "planning_offline/field/reel_place.h"
 #include "planning_offline/tether/grid_triangle.h"
-#include "planning_offline/tether/reel_place.h"
 
 namespace tautline::planning {
 namespace {

@@ -12,8 +12,8 @@
 #include "common/fields.h"
 #include "planning_offline/field/line_of_sight.h"
 #include "planning_offline/field/obstacles.h"
+#include "planning_offline/field/reel_place.h"
 #include "planning_offline/tether/convex_edges.h"
-#include "planning_offline/tether/reel_place.h"
 
 namespace tautline::planning {
 namespace {
@@ -41,6 +41,10 @@ class Obstacles {
   /// Exactly, not sampled.
   [[nodiscard]] bool sees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
     return lineOfSight(map_.shape, blocked_, a, b);
+  }
+  /// Whether the line from a to b goes through the inside of an obstacle, exactly.
+  [[nodiscard]] bool pierced(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+    return !outsideSolids(map_.shape, blocked_, a, b);
   }
 
  private:
@@ -186,7 +190,7 @@ Eigen::Vector3d cellsOf(const VoxelMap& map, const Eigen::Vector3d& p_M, const s
 bool pierces(const Obstacles& obstacles, const std::vector<Eigen::Vector3d>& stack,
              const Eigen::Vector3d& waypoint) {
   for (std::size_t i = 0; i < stack.size(); ++i) {
-    if (!obstacles.sees(stack[i], i + 1 < stack.size() ? stack[i + 1] : waypoint)) return true;
+    if (obstacles.pierced(stack[i], i + 1 < stack.size() ? stack[i + 1] : waypoint)) return true;
   }
   return false;
 }

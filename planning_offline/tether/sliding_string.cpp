@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "common/error.h"
+#include "planning_offline/field/reel_place.h"
 #include "planning_offline/tether/contact_tree.h"
 #include "planning_offline/tether/edge_equilibrium.h"
-#include "planning_offline/tether/reel_place.h"
 
 namespace tautline::planning {
 namespace {

@@ -16,8 +16,8 @@ fail() {
   printf '  %s\n' "$@"
 }
 
-# The lines of a file that are no progress of a busy machine.
-said() { grep -vE ', [0-9]+ s$' "$1"; }
+# The lines of a file that are no progress of a busy machine and not the hint under an error of the command line.
+said() { grep -vE '(, [0-9]+ s|^Run with --help for more information\.)$' "$1"; }
 
 # expect CODE PATTERN COMMAND…: exit code, one line on stderr that matches, nothing on stdout.
 expect() {
@@ -227,9 +227,35 @@ holds "risk reads legacy paths too" "len(j['states']) == 3 and 0 < j['risk'] < 1
 # Hard limits of the tether.
 sed 's/name = "pillar"/name = "pillar"\nsharp = true/' "$room" >"$work/sharp.scene.toml"
 expect 3 'round.txt: waypoint 2: .* m of tether at .*; allowed: 3.5 m.*--length-max-m' "$plan" contacts --map "$room" --path "$work/round.txt" --length-max-m 3.5
+# Where a pinned contact comes off the tether is longest just before: 4.713 m, and less than 4.66 m everywhere else.
+cat >"$work/pinned.scene.toml" <<'EOF'
+version = 1
+name = "pinned"
+min_m = [0.0, 0.0, 0.0]
+max_m = [3.0, 3.0, 3.0]
+resolution_m = 0.3
+reel_m = [0.15, 0.15, 0.15]
+
+[[boxes]]
+name = "bar"
+min_m = [0.6, 0.6, 2.1]
+max_m = [1.5, 0.9, 2.7]
+
+[[boxes]]
+name = "block"
+min_m = [0.6, 1.2, 0.6]
+max_m = [0.9, 1.5, 1.2]
+EOF
+printf '0.15 1.95 1.35\n1.05 1.95 1.35\n1.65 0.45 2.25\n1.95 1.95 2.85\n2.85 1.95 2.85\n' >"$work/pinned.txt"
+expect 3 'pinned.txt: on the way to waypoint 4: 4.713 m of tether at .*; allowed: 4.7 m' "$plan" contacts --map "$work/pinned.scene.toml" --path "$work/pinned.txt" --length-max-m 4.7
+holds "the longest tether is the one before a pop" "abs(j['longest_tether_m'] - 4.713) < 1e-3 and j['states'][4]['events'][0]['tether_length_before_m'] == j['longest_tether_m'] \
+and max(s['tether_length_m'] for s in j['states']) < 4.66" "$plan" contacts --map "$work/pinned.scene.toml" --path "$work/pinned.txt" --length-max-m 4.72 --json
 expect 3 'round.txt: on the way to waypoint 2: contact number 1 forms at .*; allowed: at most 0 at once;.*--contacts-max' "$plan" contacts --map "$room" --path "$work/round.txt" --contacts-max 0
 expect 3 'round.txt: on the way to waypoint 2: the tether touches a forbidden surface at \(1.6,.*other side' "$plan" contacts --map "$work/sharp.scene.toml" \
   --path "$work/round.txt" -o "$work/no.mission.toml" --svg "$work/no.svg"
+expect 3 'forbidden surface' "$plan" contacts --map "$work/sharp.scene.toml" --path "$work/round.txt" --algorithm as-published
+holds "reach keeps off forbidden surfaces" "j['with_contacts_within_length'] == j['straight'] < j['with_contacts_within_length_bound'] == j['with_contacts'] and j['contacts_max'] == 3" \
+  "$plan" reach --map "$work/sharp.scene.toml" --length-max-m 50 --contacts-max 3 --json
 expect 3 'forbidden surface' "$plan" contacts --map "$room" --no-contact 1.5,0,2,1.8,2,2.5 --path "$work/round.txt"
 [[ -e $work/no.svg || -e $work/no.mission.toml ]] && fail "a refused path wrote files" "$(ls "$work"/no.*)"
 holds "marks elsewhere do not matter" "j['contacts_formed'] == 1" \
@@ -255,12 +281,18 @@ else
 fi
 
 # Bad input.
+one=$config/scenes/one_contact.scene.toml
 printf 'type octile\nheight 3\nwidth 3\nmap\n...\n...\n...\n' >"$work/tiny.map"
 expect 2 '--output.*no reel|--output.*place of the reel' "$plan" plan --map "$work/tiny.map" --start 0.5,0.5,0.5 --goal 2.5,0.5,2.5 \
   --svg "$work/no.svg" --csv "$work/no.csv" -o "$work/no.mission.toml"
 [[ -e $work/no.svg || -e $work/no.csv ]] && fail "a plan without a place for its mission wrote files" "$work/no.*"
 expect 5 'nowhere/x.csv' "$plan" plan --map "$room" --goal 3.5,1.1,3.5 --planner additive --csv "$work/nowhere/x.csv"
 expect 2 '--straight-tether.*does not reach the goal' "$plan" plan --map "$room" --straight-tether --goal 3.5,1.1,3.5
+expect 5 'reel: .2.4, 1.25, 2.8. m is inside an obstacle' "$plan" reach --map "$one" --reel 2.4,1.25,2.8
+printf 'type octile\nheight 1\nwidth 17000\nmap\n%s\n' "$(head -c 17000 /dev/zero | tr '\0' .)" >"$work/long.map"
+expect 5 'long.map: is 17000 x 1 x 1 cells; allowed: at most 16384' "$plan" reach --map "$work/long.map" --reel 0.5,0.5,0.5
+printf '1.5 0.5 0.5\n16900.5 0.5 0.5\n' >"$work/long.txt"
+expect 5 'long.map: is 17000 x 1 x 1 cells; allowed: at most 16384' "$plan" contacts --map "$work/long.map" --reel 0.5,0.5,0.5 --path "$work/long.txt"
 expect 5 'reel.*too far' "$plan" reach --map "$room" --reel 100000,0,0
 expect 2 "--connectivity: is '6'; allowed: faces.edges.vertices" "$plan" plan --map "$room" --connectivity 6 --goal 3.5,1.1,3.5
 holds "moves over faces only" "all(sum(abs(a - b) > 1e-9 for a, b in zip(p, q)) == 1 for p, q in zip(j['path'], j['path'][1:]))" \
@@ -269,11 +301,30 @@ expect 2 '--field.*nope.*tether_length, contacts, all' "$plan" fields --map "$ro
 expect 2 "--field.*'contacts' needs" "$plan" fields --map "$work/tiny.map" --field contacts
 expect 2 '--start.*not in the free space' "$plan" fields --map "$room" --start 2,1,2
 expect 2 '--height.*outside the map' "$plan" reach --map "$room" --svg "$work/no.svg" --height 7
-expect 2 '--clearance: is not a number' "$plan" fields --map "$room" --clearance nan
+for option in --length-max-m --elevation-min-deg --tether-clearance; do
+  expect 2 "$option: is not a finite number" "$plan" reach --map "$room" $option nan
+done
+expect 2 '--length-max-m: .*not in range 0' "$plan" reach --map "$room" --length-max-m -1
+for option in "--length-max-m 3" "--contacts-max 1" "--algorithm exact" "--no-contact 1,0,1,2,2,2"; do
+  expect 2 "--compare.*exclude|exclude.*--compare" "$plan" contacts --map "$room" --path "$work/round.txt" --compare $option
+done
+expect 3 '--output: contacts as published stand off.*--algorithm exact' "$plan" contacts --map "$room" --path "$work/round.txt" --algorithm as-published \
+  -o "$work/no.mission.toml" --svg "$work/no.svg" --csv "$work/no.csv"
+[[ -e $work/no.svg || -e $work/no.csv || -e $work/no.mission.toml ]] && fail "a refused mission wrote files" "$(ls "$work"/no.*)"
+holds "a start that is not free skips the tether" "sorted(j['fields']) == ['distance', 'locale_risk', 'visibility', 'width']" \
+  "$plan" fields --map "$one" --clearance 0.3 --json
+"$plan" fields --map "$one" --clearance 0.3 >"$work/out" 2>"$work/err"
+[[ $? == 0 && $(said "$work/err" | wc -l) == 1 ]] && grep -q 'without tether_length and contacts: start_m' "$work/err" || fail "fields says what it leaves out" "$(cat "$work/err")"
+expect 5 'start_m of the scene: .*not in the free space' "$plan" fields --map "$one" --clearance 0.3 --field contacts
+expect 2 '--clearance: is not a finite number' "$plan" fields --map "$room" --clearance nan
 expect 5 'rewards.*inside an obstacle' "$plan" plan --map "$room" --rewards <(printf '[[rewards]]\nposition_m = [2, 1, 2]\nvalue = 1\n')
 printf '1.1 1.1 1.1\n3.1 1.1 3.1\n' >"$work/path.txt"
-expect 5 'path.txt: points 0 to 1.*leaves the free space' "$plan" risk --map "$room" --path "$work/path.txt"
-expect 5 'path.txt: points 0 to 1.*leaves the free space' "$plan" contacts --map "$room" --path "$work/path.txt"
+expect 5 'path.txt: waypoints 0 to 1.*leaves the free space' "$plan" risk --map "$room" --path "$work/path.txt"
+expect 5 'path.txt: waypoints 0 to 1.*leaves the free space' "$plan" contacts --map "$room" --path "$work/path.txt"
+printf '1.6 1.25 2.8\n3.5 1.25 2.8\n' >"$work/plane.txt"
+for verb in contacts risk; do
+  expect 5 'plane.txt: waypoints 0 to 1.*leaves the free space' "$plan" $verb --map "$one" --path "$work/plane.txt"
+done
 expect 2 '--start.*outside the map' "$plan" plan --map "$room" --start 9,9,9 --goal 3.5,1.1,3.5
 expect 2 '--start.*inside an obstacle' "$plan" plan --map "$room" --start 2,1,2 --goal 3.5,1.1,3.5
 expect 2 '--goal.*inside an obstacle' "$plan" plan --map "$room" --goal 2,1,2
@@ -284,7 +335,7 @@ expect 2 'planner: there is no planner "nosuch".*directional' "$plan" plan --map
 expect 5 'nowhere.bt' "$plan" plan --map nowhere.bt --start 1,1,1 --goal 2,2,2
 expect 5 'reel.*inside an obstacle' "$plan" contacts --map "$room" --reel 2,1,2 --path "$work/round.txt"
 printf '1 1 1\n9 1 1\n' >"$work/off.txt"
-expect 5 'off.txt: point 1: .9, 1, 1. is outside the map' "$plan" contacts --map "$room" --path "$work/off.txt"
+expect 5 'off.txt: waypoint 1: .9, 1, 1. is outside the map' "$plan" contacts --map "$room" --path "$work/off.txt"
 expect 2 "--algorithm: is 'guess'; allowed: exact.as-published" "$plan" contacts --map "$room" --path "$work/round.txt" --algorithm guess
 printf '# nothing\n' >"$work/empty.txt"
 expect 5 'empty.txt: has no point' "$plan" contacts --map "$room" --path "$work/empty.txt"
@@ -302,13 +353,13 @@ expect 2 'legacy.txt: has 9 numbers a line.*--reel' "$plan" contacts --map "$wor
 expect 2 '--reel: is missing' "$plan" contacts --map "$work/tiny.map" --path "$work/round.txt"
 expect 5 'round.mission.toml: reel_position_m: is .0.5, 0.5, 0.5., and the reel of the map' "$plan" contacts --map "$room" --reel 1,1,1 --path "$work/round.mission.toml"
 printf '3.3 1.3 3.3\n3.3 1.3 3.1\n' >"$work/behind.txt"
-expect 5 'behind.txt: first waypoint: .*an obstacle is between' "$plan" contacts --map "$room" --path "$work/behind.txt"
+expect 5 'behind.txt: waypoint 0: .*an obstacle is between' "$plan" contacts --map "$room" --path "$work/behind.txt"
 expect 2 "--no-contact: is '1,2'; allowed: x0,y0,z0" "$plan" contacts --map "$room" --path "$work/round.txt" --no-contact 1,2
 expect 2 "--no-contact: '0,0,0,1,1,1' has no obstacle" "$plan" contacts --map "$room" --path "$work/round.txt" --no-contact 0,0,0,1,1,1
 sed 's/sharp = true/sharp = 1/' "$work/sharp.scene.toml" >"$work/wrong.scene.toml"
 expect 5 'wrong.scene.toml:[0-9]+: boxes.0..sharp' "$plan" contacts --map "$work/wrong.scene.toml" --path "$work/round.txt"
 expect 5 'nowhere/x.mission.toml' "$plan" contacts --map "$room" --path "$work/round.txt" -o "$work/nowhere/x.mission.toml"
-expect 5 'first waypoint: .*an obstacle is between' "$plan" plan --map "$room" --start 3.3,1.3,3.3 --goal 3.5,1.1,1.1 -o "$work/no.mission.toml"
+expect 2 '--start: .*an obstacle is between' "$plan" plan --map "$room" --start 3.3,1.3,3.3 --goal 3.5,1.1,1.1 -o "$work/no.mission.toml"
 printf 'not a map at all\n' >"$work/bad.bt"
 expect 5 'bad.bt' "$plan" reach --map "$work/bad.bt" --reel 0,0,0
 printf 'version = 1\nname = "x"\n' >"$work/short.scene.toml"
@@ -324,7 +375,7 @@ expect 5 'table.toml:1: elements.*1.5' "$plan" risk --table "$work/table.toml"
 printf '# x y z\n\n1 1 1\n1 x 1\n' >"$work/path.txt"
 expect 5 'path.txt:4' "$plan" risk --map "$room" --path "$work/path.txt"
 printf '1 1 1\n2 1 2\n' >"$work/path.txt"
-expect 5 'path.txt: point 1.*not in the free space' "$plan" risk --map "$room" --path "$work/path.txt"
+expect 5 'path.txt: waypoint 1.*not in the free space' "$plan" risk --map "$room" --path "$work/path.txt"
 code=1
 for planner in additive directional tether utility prm exact; do
   holds "unreachable goal, $planner" "j['status'] == 'unreachable' and j['path'] == [] and j['risk'] is None" \

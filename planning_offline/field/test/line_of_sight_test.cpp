@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "common/error.h"
 #include "planning_offline/field/obstacles.h"
 #include "planning_offline/field/reference/field_reference.h"
 #include "planning_offline/field/reference/synthetic_map.h"
@@ -104,6 +105,74 @@ TEST(LineOfSight, FarthestPointsDoNotOverflow) {
   blocked[static_cast<std::size_t>(shape.index({1, 1, 1}))] = 0;
   blocked[static_cast<std::size_t>(shape.index({1, 1, 0}))] = 1;
   EXPECT_TRUE(lineOfSight(shape, blocked, -far, far));
+}
+
+/// A block of 2 × 2 × 2 cells from (2, 2, 2) to (4, 4, 4).
+class Block : public ::testing::Test {
+ protected:
+  Block() {
+    for (int z = 2; z < 4; ++z) {
+      for (int y = 2; y < 4; ++y) {
+        for (int x = 2; x < 4; ++x) blocked_[static_cast<std::size_t>(shape_.index({x, y, z}))] = 1;
+      }
+    }
+  }
+  [[nodiscard]] bool outside(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+    const bool there = outsideSolids(shape_, blocked_, a, b);
+    EXPECT_EQ(outsideSolids(shape_, blocked_, b, a), there);
+    return there;
+  }
+  GridShape shape_{6, 6, 6};
+  std::vector<std::uint8_t> blocked_ = std::vector<std::uint8_t>(shape_.size(), 0);
+};
+
+TEST_F(Block, IsInTheWayOfLinesInItsGridPlanes) {
+  EXPECT_FALSE(outside({0.5, 3, 2.5}, {5.5, 3, 3.5}));  // in one plane
+  EXPECT_FALSE(outside({0.5, 3, 3}, {5.5, 3, 3}));      // in two
+  EXPECT_FALSE(outside({3, 0.5, 3}, {3, 5.5, 3}));
+  EXPECT_FALSE(outside({3, 3, -2}, {3, 3, 9}));
+  EXPECT_FALSE(outside({3, 3, 3}, {3, 3, 3}));  // a point in three
+  EXPECT_FALSE(outside({0.5, 2.5, 2.5}, {5.5, 3.5, 3.2}));
+  EXPECT_TRUE(lineOfSight(shape_, blocked_, {0.5, 3, 3}, {5.5, 3, 3}));
+}
+
+TEST_F(Block, IsFreeAlongItsOuterFacesAndEdges) {
+  EXPECT_TRUE(outside({0.5, 4, 2.5}, {5.5, 4, 3.5}));  // faces
+  EXPECT_TRUE(outside({0.5, 2, 3}, {5.5, 2, 3}));
+  EXPECT_TRUE(outside({2, 0.5, 3}, {2, 5.5, 3}));
+  EXPECT_TRUE(outside({0.5, 4, 4}, {5.5, 4, 4}));  // edges
+  EXPECT_TRUE(outside({2, 3, 3}, {2, 3, 3}));      // a point of a face
+  EXPECT_TRUE(outside({0.5, 3, 1}, {5.5, 3, 1}));  // apart
+}
+
+TEST(OutsideSolids, IsLineOfSightWhereNoAxisStandsStill) {
+  const GridShape shape{8, 8, 8};
+  const VoxelMap map = randomMap(shape, 0.15, 0.0, 5);
+  const std::vector<std::uint8_t> blocked = obstacleCells(map, true);
+  std::mt19937 random(5);
+  const auto point = [&random] {
+    std::uniform_int_distribution<int> half(-2, 18);
+    return Eigen::Vector3d(0.5 * half(random), 0.5 * half(random), 0.5 * half(random));
+  };
+  int seen = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Eigen::Vector3d a = point();
+    const Eigen::Vector3d b = point();
+    if ((a.array() == b.array()).any()) continue;
+    const bool expected = lineOfSight(shape, blocked, a, b);
+    ASSERT_EQ(outsideSolids(shape, blocked, a, b), expected)
+        << a.transpose() << " to " << b.transpose();
+    seen += int{expected};
+  }
+  EXPECT_GT(seen, 500);
+}
+
+TEST(LineOfSight, MapsThatAreTooLongAreRefused) {
+  VoxelMap map;
+  map.shape = {16384, 1, 1};
+  EXPECT_NO_THROW(needSightSize(map));
+  map.shape = {16385, 1, 1};
+  EXPECT_THROW(needSightSize(map), InputError);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST(Reach, StraightIsLineOfSightAndTheLimitsCountApart) {
   CellIndex start = 0;
   while (free[static_cast<std::size_t>(start)] == 0) ++start;
   const Eigen::Vector3d reel = map.centre(start) + Eigen::Vector3d(0.013, -0.02, 0.031);
-  const ReachOptions options{.length_max = 1.7, .elevation_min = 5.0};
+  const ReachOptions options{.limits = {.length_max = 1.7, .elevation_min = 5.0}};
   const ReachMap reach = computeReach(map, free, reel, options, kQuiet);
   const std::vector<std::uint8_t> occupied = obstacleCells(map, false);
   std::size_t count = 0;
@@ -80,7 +80,8 @@ TEST(Reach, StraightIsLineOfSightAndTheLimitsCountApart) {
   EXPECT_LT(both, std::min(near, high));
   EXPECT_LT(std::max(near, high), count);
   EXPECT_EQ(reach.take_off, start);
-  const ReachMap one_thread = computeReach(map, free, reel, {1.7, 5.0, 0.0, 1}, kQuiet);
+  const ReachMap one_thread =
+      computeReach(map, free, reel, {.limits = options.limits, .threads = 1}, kQuiet);
   EXPECT_EQ(one_thread.straight, reach.straight);
 }
 
@@ -118,6 +119,30 @@ TEST(Reach, RefusesAReelInsideAnObstacle) {
                    computeReach(map, free, {3.5, 2.5, 4.5}, {.tether_clearance = 1.0}, kQuiet)),
                InputError);
   EXPECT_NO_THROW(static_cast<void>(computeReach(map, free, {4.0, 2.5, 4.5}, {}, kQuiet)));
+}
+
+TEST(Reach, RefusesAReelBetweenTheCellsOfAnObstacle) {
+  VoxelMap map = randomMap({8, 8, 8}, 0.0, 0.0, 1);
+  for (int z = 2; z < 4; ++z) {
+    for (int y = 2; y < 4; ++y) {
+      for (int x = 2; x < 4; ++x) occupy(map, {x, y, z});
+    }
+  }
+  const auto free = freeSpace(map, {}, kQuiet);
+  const auto reach = [&](const Eigen::Vector3d& reel, double clearance = 0.0) {
+    return computeReach(map, free, reel, {.tether_clearance = clearance}, kQuiet);
+  };
+  const Eigen::Vector3d inside[] = {{3, 2.5, 2.5}, {3, 3, 2.5}, {3, 3, 3}};
+  for (const Eigen::Vector3d& reel : inside) EXPECT_THROW((void)reach(reel), InputError);
+  EXPECT_NO_THROW((void)reach({2, 3, 3}));                // on a face
+  EXPECT_THROW((void)reach({2, 3, 3}, 1.0), InputError);  // between block and its clearance
+  EXPECT_NO_THROW((void)reach({1, 2.5, 2.5}, 1.0));       // on the face of both
+}
+
+TEST(Reach, RefusesMapsThatAreTooLong) {
+  VoxelMap map = randomMap({16385, 1, 1}, 0.0, 0.0, 1);
+  const auto free = freeSpace(map, {}, kQuiet);
+  EXPECT_THROW((void)computeReach(map, free, {0.5, 0.5, 0.5}, {}, kQuiet), InputError);
 }
 
 TEST(Reach, CancelledReachesNothingAndBlamesNobody) {

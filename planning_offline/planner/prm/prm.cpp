@@ -58,11 +58,9 @@ Space spaceOf(const PlanProblem& problem, const PlanOptions& options, const Prog
   std::optional<Eigen::Vector3d> reel = risk.map().reel;
   if (risk.string() != nullptr) reel = risk.string()->reel();
   if (!reel) return space;
-  ReachOptions reach;
-  reach.length_max = risk.params().tether_limits.length_max;
-  reach.elevation_min = risk.params().tether_limits.elevation_min;
-  reach.threads = options.threads;
-  space.allowed = computeReach(risk.map(), space.allowed, *reel, reach, progress).straight;
+  space.allowed =
+      computeReach(risk.map(), space.allowed, *reel, {.threads = options.threads}, progress)
+          .straight;
   space.name = "in the space that a straight tether reaches";
   return space;
 }

@@ -151,6 +151,51 @@ TEST(TetherReach, CountsUpToTheContactsAskedFor) {
   EXPECT_EQ(all.with_at_most.back().reached, world.lattice->freeCount());
 }
 
+TEST(TetherReach, IsNeverBelowTheStraightTether) {
+  std::size_t straight = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    const SmallWorld world = clutter({7, 7, 7}, 0.15, seed);
+    const TetherLimits limits{.length_max = 4.0, .elevation_min = -20.0};
+    const ReachMap reach = computeReach(*world.map, world.lattice->freeCells(), *world.map->reel,
+                                        {.limits = limits}, Progress());
+    const TetherReach with = tetherReach(world.map, *world.lattice, reach, limits, Progress());
+    EXPECT_GE(with.within_length.reached, reach.straight_within_length);
+    EXPECT_GE(with.within_elevation, reach.straight_within_elevation);
+    EXPECT_GE(with.within_limits.reached, reach.straight_within_limits);
+    straight += reach.straight_within_limits;
+  }
+  EXPECT_GT(straight, 400U);
+}
+
+/// A wall of sharp cells, x = 3, with a gap at its end: the tether must not touch it.
+TEST(TetherReach, KeepsOffForbiddenSurfaces) {
+  SmallWorld world = emptyWorld({9, 1, 9}, Connectivity::kVertices);
+  for (int z = 0; z < 8; ++z) {
+    world.map->cells[static_cast<std::size_t>(world.map->shape.index({3, 0, z}))] =
+        CellState::kOccupied;
+  }
+  world.map->reel = world.map->centre(0);
+  world.build();
+  const TetherReach blunt = reachOf(world, {.length_max = 30.0});
+  EXPECT_EQ(blunt.within_length.reached, world.lattice->freeCount());
+  world.map->no_contact.assign(world.map->shape.size(), 0);
+  for (std::size_t i = 0; i < world.map->cells.size(); ++i) {
+    if (world.map->cells[i] == CellState::kOccupied) world.map->no_contact[i] = 1;
+  }
+  world.build();
+  const ReachMap plain =
+      computeReach(*world.map, world.lattice->freeCells(), *world.map->reel, {}, Progress());
+  const TetherReach sharp = reachOf(world, {.length_max = 30.0});
+  EXPECT_EQ(sharp.within_length.reached, plain.straight_count);
+  EXPECT_EQ(sharp.within_limits.reached, plain.straight_count);
+  EXPECT_EQ(sharp.with_at_most.size(), 1U);
+  EXPECT_EQ(sharp.with_at_most[0].reached, plain.straight_count);
+  EXPECT_EQ(sharp.within_length.at_most, world.lattice->freeCount());
+  for (std::size_t i = 0; i < sharp.contacts.size(); ++i)
+    EXPECT_EQ(sharp.contacts[i], plain.straight[i] != 0 ? 0 : -1) << i;
+}
+
 TEST(TetherReach, SaysThatItWasCancelled) {
   const SmallWorld world = clutter({9, 5, 9}, 0.15, 3);
   const ReachMap reach =

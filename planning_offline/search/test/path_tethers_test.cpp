@@ -31,6 +31,7 @@ SmallWorld clutteredWorld(const GridShape& shape, Connectivity connectivity, dou
   for (CellState& state : map.cells) {
     if (random.uniform(0.0, 1.0) < blocked) state = CellState::kOccupied;
     surface.values.push_back(random.below(3) == 0 ? random.uniform(0.0, 0.3) : 0.0);
+    map.no_contact.push_back(state == CellState::kOccupied && map.no_contact.size() % 8 == 0);
   }
   map.layers.push_back(std::move(surface));
   const auto anyCell = [&] {
@@ -56,6 +57,7 @@ struct Replay {
   int contacts_most{0};
   bool length_allowed{true};
   bool elevation_allowed{true};
+  bool contact_allowed{true};
 
   Replay(const SmallWorld& world, TautString& string, const std::vector<CellIndex>& path) {
     const TetherLimits& limits = world.params.tether_limits;
@@ -68,7 +70,15 @@ struct Replay {
       length = string.length(stack, position);
       contacts = string.contactCount(stack);
       contacts_most = std::max(contacts_most, contacts);
-      if (length > limits.length_max) length_allowed = false;
+      if (length > limits.length_max + 1e-9) length_allowed = false;
+      for (const Eigen::Vector3d& contact : string.contacts(stack)) {
+        for (CellIndex i = 0; i < static_cast<CellIndex>(world.map->no_contact.size()); ++i) {
+          if (world.map->no_contact[at(i)] != 0 &&
+              (contact - world.map->centre(i)).cwiseAbs().maxCoeff() <
+                  0.50001 * world.map->resolution)
+            contact_allowed = false;
+        }
+      }
       const Eigen::Vector3d seen = position - string.anchor(stack);
       const double least = std::tan(limits.elevation_min * 3.14159265358979323846 / 180.0);
       if (seen.y() < least * std::hypot(seen.x(), seen.z()) - 1e-12) elevation_allowed = false;
@@ -81,6 +91,7 @@ struct Seen {
   int contacts{0};
   int too_long{0};
   int too_low{0};
+  int forbidden{0};
 };
 
 void compare(const SmallWorld& world, const LeastRiskTree& tree, Seen& seen) {
@@ -95,6 +106,7 @@ void compare(const SmallWorld& world, const LeastRiskTree& tree, Seen& seen) {
       ASSERT_EQ(all.contacts_most[at(cell)], -1);
       ASSERT_EQ(all.length_allowed[at(cell)], 0);
       ASSERT_EQ(all.elevation_allowed[at(cell)], 0);
+      ASSERT_EQ(all.contact_allowed[at(cell)], 0);
       continue;
     }
     const Replay replay(world, *world.risk->string(), path);
@@ -106,10 +118,12 @@ void compare(const SmallWorld& world, const LeastRiskTree& tree, Seen& seen) {
     ASSERT_EQ(all.contacts_most[at(cell)], replay.contacts_most) << cell;
     ASSERT_EQ(all.length_allowed[at(cell)] != 0, replay.length_allowed) << cell;
     ASSERT_EQ(all.elevation_allowed[at(cell)] != 0, replay.elevation_allowed) << cell;
+    ASSERT_EQ(all.contact_allowed[at(cell)] != 0, replay.contact_allowed) << cell;
     ++seen.cells;
     seen.contacts += replay.contacts_most;
     seen.too_long += replay.length_allowed ? 0 : 1;
     seen.too_low += replay.elevation_allowed ? 0 : 1;
+    seen.forbidden += replay.contact_allowed ? 0 : 1;
   }
 }
 
@@ -136,6 +150,7 @@ TEST(PathTethers, EqualEachPathFlownFromItsStart) {
     EXPECT_GT(seen.cells, 20000);
     EXPECT_GT(seen.contacts, 20000);
     EXPECT_GT(seen.too_long, 1000);
+    EXPECT_GT(seen.forbidden, 1000);
   }
   EXPECT_GT(space.too_low, 1000);
 }

@@ -103,6 +103,33 @@ TEST(ContactPlan, RefusesAReelInsideAnObstacle) {
   EXPECT_THROW((void)planContacts(map, at(map, 1.5, 1.5, 1.5), {}), InputError);
 }
 
+TEST(ContactPlan, TheLongestTetherMayBeJustBeforeAContactComesOff) {
+  VoxelMap map = walks::emptyMap({10, 10, 10});
+  const auto block = [&map](const Eigen::Vector3i& low, const Eigen::Vector3i& high) {
+    for (int z = low.z(); z < high.z(); ++z) {
+      for (int y = low.y(); y < high.y(); ++y) {
+        for (int x = low.x(); x < high.x(); ++x) walks::occupy(map, {x, y, z});
+      }
+    }
+  };
+  block({2, 2, 7}, {5, 3, 9});
+  block({2, 4, 2}, {3, 5, 4});
+  const Points path{at(map, 0.5, 6.5, 4.5), at(map, 3.5, 6.5, 4.5), at(map, 5.5, 1.5, 7.5),
+                    at(map, 6.5, 6.5, 9.5), at(map, 9.5, 6.5, 9.5)};
+  const ContactPlan plan = planContacts(map, at(map, 0.5, 0.5, 0.5), path);
+  ASSERT_EQ(plan.states[4].events.size(), 2U);
+  const ContactEvent& pop = plan.states[4].events[0];
+  EXPECT_EQ(pop.kind, ContactChange::kPop);
+  double elsewhere = 0.0;
+  for (const TetherState& state : plan.states) {
+    elsewhere = std::max(elsewhere, state.length);
+    for (const ContactEvent& event : state.events) elsewhere = std::max(elsewhere, event.length);
+  }
+  EXPECT_GT(pop.length_before, elsewhere + 0.1 * map.resolution);
+  EXPECT_EQ(longestTether(plan), pop.length_before);
+  EXPECT_EQ(pop.length, plan.states[4].events[1].length_before);
+}
+
 /// Random walks on random maps, every fourth cell a waypoint: legs of several cells.
 class Walks : public ::testing::TestWithParam<bool> {
  protected:
@@ -222,6 +249,41 @@ TEST_P(Walks, NoPlaceOnTheWayHasALongerTether) {
   });
 }
 
+TEST_P(Walks, EventsKnowTheTetherJustBeforeThem) {
+  int jumps = 0;
+  forFlights(60, [&](const VoxelMap& map, const Points& path) {
+    const ContactPlan plan = planContacts(map, path[0], path);
+    const std::unique_ptr<TautString> string = makeTautString(map, path[0]);
+    StackId stack = kStraight;
+    double seen = 0.0;  // all that states and the tethers after the events show
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const TetherState& state = plan.states[i];
+      const double leg = (path[i] - path[i - 1]).norm();
+      if (!state.events.empty()) {
+        const ContactEvent& event = state.events.front();
+        const double back =
+            std::max((event.vehicle - path[i - 1]).norm() - 4e-3 * map.resolution, 0.0);
+        const Eigen::Vector3d p = path[i - 1] + back / leg * (path[i] - path[i - 1]);
+        EXPECT_NEAR(string->length(string->move(stack, path[i - 1], p), p), event.length_before,
+                    5e-3 * map.resolution);
+        EXPECT_LE(event.length_before, longestTether(plan));
+      }
+      for (const ContactEvent& event : state.events) {
+        seen = std::max(seen, event.length);
+        jumps += event.length_before - event.length > 0.01 * map.resolution ? 1 : 0;
+      }
+      seen = std::max(seen, state.length);
+      stack = string->move(stack, path[i - 1], path[i]);
+    }
+    if (map.shape.planar()) {
+      EXPECT_LE(longestTether(plan), seen + 0.01 * map.resolution);  // nothing pins it
+    }
+  });
+  if (!GetParam()) {
+    EXPECT_GT(jumps, 5);
+  }
+}
+
 TEST_P(Walks, TheStringKnowsWhetherAContactTouchesAMarkedCell) {
   int touching = 0;
   walks::Random random(5);
@@ -263,6 +325,8 @@ TEST(NoContactCells, AreTouchedOnTheirFacesEdgesAndCorners) {
   EXPECT_TRUE(cells.touchedAt(at(map, 2, 2, 1.5)));
   EXPECT_TRUE(cells.touchedAt(at(map, 2.000001, 1.5, 1.5)));
   EXPECT_FALSE(cells.touchedAt(at(map, 2.001, 1.5, 1.5)));
+  EXPECT_TRUE(cells.touchedAt(at(map, 2.1, 2.1, 1.5), 0.1));  // put off the edge
+  EXPECT_FALSE(cells.touchedAt(at(map, 2.2, 2.1, 1.5), 0.1));
   EXPECT_FALSE(cells.touchedAt(at(map, 1, 1, 2.5)));
   EXPECT_FALSE(cells.touchedAt(at(map, -3, 0, 9)));
 }
