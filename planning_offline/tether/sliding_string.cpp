@@ -24,6 +24,7 @@ constexpr double kShorter = 1e-8;   // less is no gain
 constexpr int kIdleMax = 8;         // slips without a gain, then the string hangs at a corner
 constexpr int kJointRounds = 30;    // of the quick way to the place of rest, then the sure one
 constexpr int kRoundsMax = 1000;
+constexpr int kSweepsMax = 2000;  // a move; a few are usual
 
 }  // namespace
 
@@ -69,6 +70,7 @@ SlidingString::SlidingString(const VoxelMap& map, const Eigen::Vector3d& reel)
 void SlidingString::moveTo(const Eigen::Vector3d& p_M) {
   const Eigen::Vector3d q = (p_M - origin_) / resolution_;
   TAUTLINE_CHECK((q.array().abs() <= kFarthest).all());
+  sweeps_left_ = kSweepsMax;
   const Bends bends = bends_;
   const Eigen::Vector3d from = end_;
   if (follow(q) && free()) return;
@@ -106,10 +108,14 @@ std::vector<Eigen::Vector3d> SlidingString::contacts() const {
   return points;
 }
 
+bool SlidingString::lead(Side& side, const Eigen::Vector3d& x, const Eigen::Vector3d& q) {
+  return --sweeps_left_ >= 0 && sweep_.drag(side, x, q);
+}
+
 bool SlidingString::follow(const Eigen::Vector3d& q) {
   Side side(sweep_.solid(), reel_);
   side.bends().swap(bends_);
-  const bool led = sweep_.drag(side, end_, q);
+  const bool led = lead(side, end_, q);
   bends_.swap(side.bends());
   end_ = q;
   return led && relax();
@@ -239,7 +245,7 @@ bool SlidingString::turnCorner(std::size_t first, std::size_t end,
   if (led && ahead(in) && ahead(out)) {
     reel_side.push({at, onto.edge, turn});
   } else {
-    led = led && sweep_.drag(reel_side, at, end_side.anchor());
+    led = led && lead(reel_side, at, end_side.anchor());
   }
   bends_ = std::move(reel_side.bends());
   bends_.insert(bends_.end(), end_side.bends().rbegin(), end_side.bends().rend());
@@ -280,8 +286,8 @@ bool SlidingString::sweepBoth(Side& reel_side, Side& end_side, std::size_t first
   reel_side.bends().assign(bends_.begin(), at(first));
   end_side.bends().assign(bends_.rbegin(), std::make_reverse_iterator(at(end)));
   turnOver();
-  const bool led = sweep_.drag(reel_side, bends_[first].bend.at, to) &&
-                   sweep_.drag(end_side, bends_[end - 1].bend.at, to);
+  const bool led =
+      lead(reel_side, bends_[first].bend.at, to) && lead(end_side, bends_[end - 1].bend.at, to);
   turnOver();
   return led;
 }
@@ -302,8 +308,8 @@ SlidingString::Slid SlidingString::slip(std::size_t first, std::size_t end,
                                         const Eigen::Vector3d& off) {
   Side reel_side(sweep_.solid(), reel_);
   Side end_side(sweep_.solid(), end_);
-  const bool led = sweepBoth(reel_side, end_side, first, end, off) &&
-                   sweep_.drag(reel_side, off, end_side.anchor());
+  const bool led =
+      sweepBoth(reel_side, end_side, first, end, off) && lead(reel_side, off, end_side.anchor());
   if (!led) return Slid::kEndless;
   bends_ = std::move(reel_side.bends());
   bends_.insert(bends_.end(), end_side.bends().rbegin(), end_side.bends().rend());
@@ -315,7 +321,7 @@ bool SlidingString::straighten(std::size_t i) {
   Side reel_side(sweep_.solid(), reel_);
   reel_side.bends().assign(bends_.begin(), at);
   const Bends rest(at + 1, bends_.end());
-  if (!sweep_.drag(reel_side, at->bend.at, after(i))) return false;
+  if (!lead(reel_side, at->bend.at, after(i))) return false;
   bends_ = std::move(reel_side.bends());
   // The end of that sweep may meet the very edge that it came to.
   if (!bends_.empty() && !rest.empty() &&

@@ -25,7 +25,8 @@ class SlidingString {
 
   [[nodiscard]] Eigen::Vector3d reel() const { return origin_ + resolution_ * reel_; }
 
-  /// The vehicle goes straight to p [M, m]; finite, within kFarthest of the map's origin.
+  /// The vehicle goes straight to p [M, m]; finite, within kFarthest of the map's origin. A move
+  /// ends after at most 2000 sweeps of parts of the string, unresolved if they were not enough.
   void moveTo(const Eigen::Vector3d& p_M);
 
   /// From the reel along the contacts to the vehicle [m].
@@ -48,6 +49,8 @@ class SlidingString {
 
   // All points below are in cells.
 
+  /// StringSweep::drag(), as often as a move may.
+  [[nodiscard]] bool lead(Side& side, const Eigen::Vector3d& x, const Eigen::Vector3d& q);
   [[nodiscard]] bool follow(const Eigen::Vector3d& q);
   /// Until the string is at rest; false if it takes more rounds than any string needs.
   [[nodiscard]] bool relax();
@@ -103,6 +106,7 @@ class SlidingString {
   Eigen::Vector3d reel_;
   Eigen::Vector3d end_;
   Bends bends_;  ///< From the reel to the vehicle.
+  int sweeps_left_{0};
   std::int64_t unresolved_{0};
 };
 

@@ -69,7 +69,8 @@ class StringSweep {
   [[nodiscard]] bool free(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const noexcept {
     return !solid_.penetrated(a, b, solid_.field().near(a, b, b).occupied);
   }
-  /// The same for the free part that the last drag() left, from its anchor to its end.
+  /// The same for the free part that the last drag() left, from its anchor to its end: what that
+  /// sweep found near is asked for no second time. No other drag() may be in between.
   [[nodiscard]] bool freeAfterDrag(const Eigen::Vector3d& anchor,
                                    const Eigen::Vector3d& end) const noexcept {
     return !solid_.penetrated(anchor, end, near_.occupied);
