@@ -57,7 +57,7 @@ bool isVirtual(int fd, ifreq request) noexcept {
 }
 
 std::string reasonText(CanStatus status, int error, const std::string& name) {
-  const std::string bring_up = "ip link set " + name + " up type can bitrate 500000";
+  const std::string bring_up = "ip link set " + name + " up type can bitrate 500000 restart-ms 100";
   switch (status) {
     case CanStatus::kOpen:
       return {};

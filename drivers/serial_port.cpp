@@ -88,7 +88,8 @@ std::string reasonText(SerialStatus status, int error, const SerialConfig& confi
       return device + ": no such device; plug it in or set the path (ls /dev/serial/by-id)";
     case SerialStatus::kPermission:
       return device +
-             ": permission denied; add the user to group dialout (usermod -aG dialout USER) and "
+             ": permission denied; add the user to group dialout, or tautline where its package is "
+             "installed (usermod -aG dialout USER), and "
              "log in again";
     case SerialStatus::kBusy:
       return device + ": in use by " + describeHolder(device) + "; stop that program first";

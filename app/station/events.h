@@ -110,9 +110,11 @@ inline constexpr std::array<EventText, 29> kEventTexts{{
      "no arming; trying again",
      "plug the adapter in; see `ip -brief link show type can`, and can.interface"},
     {EventCode::kLinkInterfaceDown, Severity::kError, "the CAN interface is down",
-     "no arming; trying again", "as root: ip link set can0 up type can bitrate 500000"},
+     "no arming; trying again",
+     "as root: ip link set can0 up type can bitrate 500000 restart-ms 100"},
     {EventCode::kLinkBusOff, Severity::kError, "the CAN controller is off the bus", "no arming",
-     "check wiring and bit rate; as root: ip link set can0 type can restart-ms 100"},
+     "check wiring and bit rate; as root: ip link set can0 down; ip link set can0 up type can "
+     "bitrate 500000 restart-ms 100"},
     {EventCode::kLinkBusErrors, Severity::kError, "the CAN controller sees errors on the bus",
      "no arming", "check the bit rate (500000), wiring, and 120 ohm at both ends"},
     {EventCode::kLinkNoAcknowledge, Severity::kError, "nobody on the bus acknowledges", "no arming",

@@ -91,6 +91,18 @@ void becomeRealTime(const StationConfig& config) {
   }
 }
 
+/// A box that cannot be made is no reason to stay on the ground; one that another station has is.
+std::unique_ptr<BlackBox> makeBlackBox(const StationConfig& config) {
+  if (config.black_box.empty()) return nullptr;
+  try {
+    return std::make_unique<BlackBox>(config.black_box);
+  } catch (const InputError& e) {
+    if (e.code() == ExitCode::kRefused) throw;
+    fmt::print(stderr, "tautline-station: warning: {}; there is no black box\n", e.what());
+    return nullptr;
+  }
+}
+
 void run(const Options& options) {
   const StationConfig config = effectiveConfig(options);
   const std::string effective = dumpConfig(config);
@@ -109,8 +121,7 @@ void run(const Options& options) {
   if (!made.warning.empty())
     fmt::print(stderr, "tautline-station: warning: {}; trying again\n", made.warning);
   const auto station = std::make_unique<Station>(config.core);
-  const auto black_box =
-      config.black_box.empty() ? nullptr : std::make_unique<BlackBox>(config.black_box);
+  const std::unique_ptr<BlackBox> black_box = makeBlackBox(config);
   Telemetry telemetry(lcm, config.run_mode, unixOffset(),
                       fromSeconds(1.0 / config.telemetry_rate_hz));
 

@@ -78,6 +78,8 @@ install(DIRECTORY toolchain/systemd/ DESTINATION lib/systemd/system COMPONENT st
 install(FILES toolchain/udev/60-tautline.rules DESTINATION lib/udev/rules.d COMPONENT station)
 install(PROGRAMS "${TAUTLINE_PACKAGING}/log-quota" DESTINATION usr/lib/tautline COMPONENT station)
 install(FILES config/station_fotokite.toml DESTINATION etc/tautline RENAME station.toml COMPONENT station)
+install(FILES config/station_tautline_can.toml config/station_tautline_serial.toml config/station_replay.toml config/tautline.dbc
+        DESTINATION usr/share/doc/tautline-station/examples COMPONENT station)
 install(FILES "${TAUTLINE_PACKAGING}/logger.conf" "${TAUTLINE_PACKAGING}/can.conf" DESTINATION etc/tautline COMPONENT station)
 install(FILES "${TAUTLINE_PACKAGING}/limits.conf" DESTINATION etc/security/limits.d RENAME tautline.conf COMPONENT station)
 install(FILES "${TAUTLINE_PACKAGING}/lintian-overrides" DESTINATION usr/share/lintian/overrides RENAME tautline-station

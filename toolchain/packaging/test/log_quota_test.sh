@@ -30,6 +30,12 @@ expect "the two oldest make room" "d.lcm.00 e.lcm f.lcm notes.txt "
 grep -q 'deleting .*/b c.lcm' "$work/notes.txt" || { echo "FAILED: it does not say what it deletes"; failed=1; }
 LOG_QUOTA_MB=1 LOG_SPLIT_MB=8 "$quota" "$work" >/dev/null
 expect "the newest stays, whatever the quota" "f.lcm notes.txt "
+fill
+sleep 60 9>>"$work/a.lcm" & writer=$!
+touch -d "2026-01-01 00:00" "$work/a.lcm"
+LOG_QUOTA_MB=1 LOG_SPLIT_MB=8 "$quota" "$work" >/dev/null
+kill $writer
+expect "a log that is open stays, however old it looks" "a.lcm f.lcm notes.txt "
 "$quota" "$work/nowhere"
 rm -f "$work"/*
 "$quota" "$work"
