@@ -214,7 +214,7 @@ std::size_t SlidingString::cornerBefore(std::size_t end) const {
 
 SlidingString::Slid SlidingString::turnCorner() {
   for (std::size_t end = bends_.size(); end > 0; end = cornerBefore(end)) {
-    const auto& [bend, run] = bends_[end - 1];
+    const auto [bend, run] = bends_[end - 1];  // what is tried moves bends_
     if (std::min(bend.place() - run.low, run.high - bend.place()) > kTogether) continue;
     const std::size_t first = cornerBefore(end);
     for (const ShrunkSolid::EdgeEnd& onto : sweep_.solid().edgesFrom(bend.at)) {
