@@ -82,8 +82,9 @@ void writeFiles(const Arguments& arguments, const PlanResult& result, const Plan
       fmt::format("{}, {}: risk {:.3f}", map.name, arguments.planner, result.report.risk);
   std::optional<Mission> mission;  // made first: what cannot be a mission leaves no file behind
   if (!arguments.output.empty()) {
-    mission = missionOf(contactsOf(result.report, map), ordersOf(result.report), map,
-                        fmt::format("Planned by {}", title), arguments.output);
+    mission =
+        missionOf(contactsOf(result.report, map, {.frictionless = false}), ordersOf(result.report),
+                  map, fmt::format("Planned by {}", title), arguments.output);
   }
   if (!arguments.csv.empty())
     writeFileAtomically(arguments.csv, riskTableCsv(result.report, space.problem.risk->enabled()));

@@ -80,10 +80,11 @@ json statesJson(const RiskReport& report, const std::vector<RiskElement>& elemen
   return out;
 }
 
-ContactPlan contactsOf(const RiskReport& report, const VoxelMap& map) {
+ContactPlan contactsOf(const RiskReport& report, const VoxelMap& map,
+                       const ContactOptions& options) {
   std::vector<Eigen::Vector3d> path;
   for (const StateRisk& state : report.states) path.push_back(state.position);
-  return planContacts(map, *map.reel, path);
+  return planContacts(map, *map.reel, path, options);
 }
 
 double wayLength(const RiskReport& report) {

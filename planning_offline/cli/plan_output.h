@@ -25,7 +25,8 @@ namespace tautline::planning {
                                         const std::vector<RiskElement>& elements);
 
 /// The states of a path with the tether of the map's reel, which must be there.
-[[nodiscard]] ContactPlan contactsOf(const RiskReport& report, const VoxelMap& map);
+[[nodiscard]] ContactPlan contactsOf(const RiskReport& report, const VoxelMap& map,
+                                     const ContactOptions& options = {});
 
 /// Length of the way along the states [m].
 [[nodiscard]] double wayLength(const RiskReport& report);

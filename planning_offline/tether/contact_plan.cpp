@@ -217,7 +217,7 @@ ContactPlan planContacts(const VoxelMap& map, const Eigen::Vector3d& reel,
   switch (options.algorithm) {
     case ContactAlgorithm::kExact:
       flyExact(map, reel, path, plan);
-      addFrictionless(map, reel, plan);
+      if (options.frictionless) addFrictionless(map, reel, plan);
       break;
     case ContactAlgorithm::kAsPublished:
       flyAsPublished(map, reel, path, options.published, plan);

@@ -69,6 +69,7 @@ struct ContactPlan {
 struct ContactOptions {
   ContactAlgorithm algorithm{ContactAlgorithm::kExact};
   PublishedOptions published{};  ///< For kAsPublished.
+  bool frictionless{true};       ///< Exact: find TetherState::frictionless_length too.
 };
 
 /// The path is flown in straight legs, after a straight line from the reel to its first waypoint;
