@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-PROJECT = ["common", "lcmtypes", "drivers", "estimation", "control", "planning_offline", "sim_hil", "app"]
+PROJECT = ["common", "lcmtypes", "drivers", "estimation", "control", "supervision", "planning_offline", "sim_hil", "app"]
 
 # Folder (longest prefix wins) -> project folders it may include besides itself. A name ending in .h is a single header.
 MAY_INCLUDE = {
@@ -16,9 +16,10 @@ MAY_INCLUDE = {
     "drivers": ["common"],
     "estimation": ["common"],
     "control": ["common"],
+    "supervision": ["common"],
     "planning_offline": ["common"],
     "sim_hil": ["common", "lcmtypes", "drivers/fotokite_protocol.h", "drivers/tautline_protocol.h"],
-    "app": ["common", "lcmtypes", "drivers", "estimation", "control"],
+    "app": ["common", "lcmtypes", "drivers", "estimation", "control", "supervision"],
     "app/bench": PROJECT,
 }
 

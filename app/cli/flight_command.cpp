@@ -40,8 +40,8 @@ Mode modeOf(const tautline::station_state_t& state) { return static_cast<Mode>(s
 const char* modeName(const tautline::station_state_t& state) {
   return nameOf(modeOf(state), kModeNames);
 }
-ConditionSet bitsOf(std::int32_t bits) {
-  return ConditionSet::fromBits(static_cast<std::uint32_t>(bits));
+ConditionSet bitsOf(std::int64_t bits) {
+  return ConditionSet::fromBits(static_cast<std::uint64_t>(bits));
 }
 
 /// Prints one line: words for people, or one JSON object.
@@ -67,7 +67,7 @@ ExitCode finish(const Options& options, const char* verb, ExitCode code, const s
 }
 
 /// " because of …", or nothing.
-std::string becauseOf(std::int32_t bits) {
+std::string becauseOf(std::int64_t bits) {
   const std::string reasons = describe(bitsOf(bits));
   return reasons.empty() ? "" : " because of " + reasons;
 }
@@ -312,8 +312,10 @@ void addFlightCommands(CLI::App& root, ExitCode& result) {
        5},
       {"land", "Go home, land and stop the motors", "tautline land", Request::kLand, Mode::kStandby,
        180},
-      {"stop", "Motors off at once. The drone falls", "tautline stop", Request::kStop, Mode::kEstop,
-       5},
+      {"stop", "Stand still now; nothing moves until the next command", "tautline stop",
+       Request::kStop, Mode::kFailsafe, 5},
+      {"estop", "Motors off at once. The drone falls", "tautline estop", Request::kEstop,
+       Mode::kEstop, 5},
   };
   for (const Verb& v : kVerbs) {
     withTimeout(add(v.name, v.text, v.example))->callback([options, &result, v] {

@@ -196,7 +196,7 @@ class Reader {
   void addState(const station_state_t& m, double t) {
     log_.states.push_back({t, enumOr(m.run_mode, kRunModeNames, RunMode::kReal),
                            enumOr(m.mode, kModeNames, Mode::kStandby),
-                           ConditionSet::fromBits(static_cast<std::uint32_t>(m.reasons)),
+                           ConditionSet::fromBits(static_cast<std::uint64_t>(m.reasons)),
                            m.mission_hash});
   }
 

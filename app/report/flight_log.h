@@ -21,7 +21,7 @@
 #include "common/estimate.h"
 #include "common/vehicle.h"
 #include "control/motion_executor.h"
-#include "control/supervisor.h"
+#include "supervision/supervisor.h"
 
 namespace tautline::report {
 

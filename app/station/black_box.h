@@ -19,7 +19,7 @@ struct CycleRecord {
   std::int64_t now_ns{0};
   std::int64_t lateness_ns{0};
   std::int64_t work_ns{0};
-  std::uint32_t conditions{0};
+  std::uint64_t conditions{0};
   std::uint8_t mode{0};
   std::uint8_t action{0};
   std::uint8_t health{0};

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "common/vehicle.h"
-#include "control/supervisor.h"
+#include "supervision/supervisor.h"
 
 namespace tautline {
 
@@ -83,7 +83,7 @@ inline constexpr std::array<EventText, 29> kEventTexts{{
      "zero rates; landing when it is back", "check that the device is plugged in and powered"},
     {EventCode::kLinkBack, Severity::kInfo, "link to the vehicle is back", "", ""},
     {EventCode::kLocalizationLost, Severity::kError, "localization lost", "zero rates",
-     "wait for it to come back; `tautline stop` cuts the motors"},
+     "wait for it to come back; `tautline estop` cuts the motors"},
     {EventCode::kLocalizationBack, Severity::kInfo, "localization is back", "", ""},
     {EventCode::kVehicleFault, Severity::kCritical, "the vehicle reports a fault", "landing",
      "see the flight mode and flags in `tautline status`"},

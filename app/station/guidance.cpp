@@ -38,8 +38,7 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
     case Mode::kLand:
       if (landing_ == Landing::kStopMotors) out.action = paced(VehicleAction::kMotorStop, in.now);
       break;
-    case Mode::kHold:
-    case Mode::kAuto:
+    default:
       break;
   }
   out.engaged = true;

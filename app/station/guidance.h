@@ -13,7 +13,7 @@
 #include "common/vehicle.h"
 #include "control/contact_stack.h"
 #include "control/motion_executor.h"
-#include "control/supervisor.h"
+#include "supervision/supervisor.h"
 
 namespace tautline {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "common/fields.h"
-#include "control/supervisor.h"
+#include "supervision/supervisor.h"
 
 namespace tautline {
 

@@ -129,7 +129,7 @@ Request Station::takeCommand(const StepInput& in) noexcept {
   }
   if (!in.command) return Request::kNone;
   const OperatorCommand& c = *in.command;
-  if (c.request == Request::kNone || c.request > Request::kStop) {
+  if (c.request == Request::kNone || c.request > Request::kEstop) {
     answer(c.session, c.sequence, AckResult::kUnknown, {});
     return Request::kNone;
   }
@@ -197,9 +197,7 @@ VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
                                      Condition::kLinkLost, Condition::kVehicleStale,
                                      Condition::kLocalizationLost};
   const Mode mode = out_.supervision.mode;
-  const bool may_move =
-      mode == Mode::kTakeoff || mode == Mode::kHold || mode == Mode::kAuto || mode == Mode::kLand;
-  if (may_move && !out_.conditions.any(kStandStill)) return gated;
+  if (isIn(mode, kFlyingModes) && !out_.conditions.any(kStandStill)) return gated;
   gate_.reset();
   VehicleCommand still;
   still.engaged = gated.engaged;

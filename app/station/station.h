@@ -23,7 +23,7 @@
 #include "control/command_gate.h"
 #include "control/controller.h"
 #include "control/reel_dead_zone.h"
-#include "control/supervisor.h"
+#include "supervision/supervisor.h"
 #include "estimation/localizer.h"
 
 namespace tautline {

@@ -19,7 +19,7 @@
 #include "control/control_config.h"
 #include "control/motion_executor.h"
 #include "control/reel_dead_zone.h"
-#include "control/supervisor.h"
+#include "supervision/supervisor.h"
 #include "control/vehicle_limits.h"
 #include "drivers/can_socket.h"
 #include "drivers/fotokite_device.h"

@@ -53,7 +53,7 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
     ack.session = out.ack->session;
     ack.sequence = out.ack->sequence;
     ack.result = as<std::int8_t>(out.ack->result);
-    ack.reasons = as<std::int32_t>(out.ack->reasons.bits());
+    ack.reasons = as<std::int64_t>(out.ack->reasons.bits());
     ack.detail = out.ack->detail;
     send(channel::kCommandAck, ack, in.now);
   }
@@ -83,8 +83,8 @@ void Telemetry::sendStation(Time now, const StepOutput& out) noexcept {
   tautline::station_state_t m{};
   m.run_mode = as<std::int8_t>(run_mode_);
   m.mode = as<std::int8_t>(out.supervision.mode);
-  m.conditions = as<std::int32_t>(out.conditions.bits());
-  m.reasons = as<std::int32_t>(out.supervision.reasons.bits());
+  m.conditions = as<std::int64_t>(out.conditions.bits());
+  m.reasons = as<std::int64_t>(out.supervision.reasons.bits());
   m.time_in_mode_us =
       std::chrono::duration_cast<std::chrono::microseconds>(out.supervision.time_in_mode).count();
   m.mission_hash = as<std::int64_t>(out.loaded_hash);
@@ -192,8 +192,8 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
   if (event.code == EventCode::kModeChanged) {
     event_.text.append(nameOf(event.mode, kModeNames));
     const char* separator = " because of ";
-    for (const auto& entry : kConditionNames) {
-      if (!event.reasons.has(entry.value)) continue;
+    for (const auto& entry : kConditionInfos) {
+      if (!event.reasons.has(entry.condition)) continue;
       event_.text.append(separator).append(entry.name);
       separator = " ";
     }

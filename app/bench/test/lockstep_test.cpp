@@ -210,7 +210,7 @@ TEST(Lockstep, UnpluggedInAMissionLandsWhenPluggedInAgain) {
 
 TEST(Lockstep, StopCutsTheMotorsAndStaysStopped) {
   Airborne flight;
-  EXPECT_TRUE(flight.ask(Request::kStop));
+  EXPECT_TRUE(flight.ask(Request::kEstop));
   flight.wait(seconds(3));
   EXPECT_EQ(flight.mode(), Mode::kEstop);
   EXPECT_FALSE(flight.bench->truth().motors_on);

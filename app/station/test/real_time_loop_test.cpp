@@ -57,7 +57,7 @@ class CycleSink final : public TelemetrySink {
     } else if (std::strcmp(name, channel::kStationState) == 0) {
       tautline::station_state_t m;
       EXPECT_GT(m.decode(bytes.data(), 0, size), 0);
-      conditions.push_back(ConditionSet::fromBits(static_cast<std::uint32_t>(m.conditions)));
+      conditions.push_back(ConditionSet::fromBits(static_cast<std::uint64_t>(m.conditions)));
     }
     return true;
   }

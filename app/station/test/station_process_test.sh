@@ -57,7 +57,7 @@ start_station
 check "station runs without a device" soon 5 '"mode":"STANDBY"'
 check "it names the missing device" grep -q "device" "$work/station.txt"
 check "arming is refused with exit code 3" exit_code 3 tautline arm
-check "and names the link" grep -q LINK_LOST "$work/last.txt"
+check "and names the link" grep -q LINK_VEHICLE "$work/last.txt"
 
 # The device comes, is flown, goes, comes back.
 start_sim
@@ -66,14 +66,14 @@ check "arm" tautline arm --quiet
 check "take-off" tautline takeoff --quiet
 kill -KILL "$sim"
 wait "$sim" 2>/dev/null
-check "an unplugged device is noticed" soon 4 '"mode":"LAND".*|LINK_LOST'
+check "an unplugged device is noticed" soon 4 '"mode":"LAND".*|LINK_VEHICLE'
 check "the station still runs" kill -0 "$station"
 start_sim
 check "a device on the ground ends the landing" soon 12 '"mode":"STANDBY"'
 check "the link is back" soon 8 '"conditions":""'
 
 # Stop is latched; disarm clears it.
-check "stop" tautline stop --quiet
+check "estop" tautline estop --quiet
 check "arming after a stop is refused" exit_code 3 tautline arm
 check "disarm" tautline disarm --quiet
 

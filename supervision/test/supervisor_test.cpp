@@ -1,4 +1,4 @@
-#include "control/supervisor.h"
+#include "supervision/supervisor.h"
 
 #include <vector>
 
@@ -31,7 +31,7 @@ Driven drivenTo(Mode mode) {
   d.step({});
   if (mode == M::kStandby) return d;
   if (mode == M::kEstop) {
-    d.step({}, R::kStop);
+    d.step({}, R::kEstop);
     return d;
   }
   d.step({}, R::kArm);
@@ -64,22 +64,22 @@ class AllCases : public ::testing::TestWithParam<Mode> {};
 
 TEST_P(AllCases, EndInASafeMode) {
   const Mode from = GetParam();
-  const int n = static_cast<int>(kConditionNames.size());
+  const int n = static_cast<int>(kConditionInfos.size());
   int cases = 0;
   for (const auto& request : kRequestNames) {
     for (int i = 0; i < n; ++i) {
       for (int j = i; j < n; ++j) {
         for (int k = j; k < n; ++k) {
-          ConditionSet set{kConditionNames[static_cast<std::size_t>(i)].value,
-                           kConditionNames[static_cast<std::size_t>(j)].value,
-                           kConditionNames[static_cast<std::size_t>(k)].value};
+          ConditionSet set{kConditionInfos[static_cast<std::size_t>(i)].condition,
+                           kConditionInfos[static_cast<std::size_t>(j)].condition,
+                           kConditionInfos[static_cast<std::size_t>(k)].condition};
           Driven d = drivenTo(from);
           const SupervisorOutput out = d.step(set, request.value);
           ++cases;
           const std::string what =
               std::string(nameOf(from, kModeNames)) + " + " + request.name + " + " + describe(set);
 
-          if (request.value == R::kStop || (from == M::kEstop && request.value != R::kDisarm)) {
+          if (request.value == R::kEstop || (from == M::kEstop && request.value != R::kDisarm)) {
             EXPECT_EQ(out.mode, M::kEstop) << what;
           }
           // Nothing starts motors or missions by itself, and nothing arms while something is wrong.
@@ -161,7 +161,7 @@ TEST(Supervisor, AskingForWhatIsAlreadySoIsTaken) {
   EXPECT_TRUE(drivenTo(M::kHold).step(kFlying, R::kHold).request_taken);
   EXPECT_TRUE(drivenTo(M::kLand).step(kFlying, R::kLand).request_taken);
   EXPECT_TRUE(drivenTo(M::kArmed).step({}, R::kArm).request_taken);
-  EXPECT_TRUE(drivenTo(M::kEstop).step({}, R::kStop).request_taken);
+  EXPECT_TRUE(drivenTo(M::kEstop).step({}, R::kEstop).request_taken);
 }
 
 TEST(Supervisor, TimesOutOfArmedAndTakeoff) {
@@ -175,7 +175,7 @@ TEST(Supervisor, TimesOutOfArmedAndTakeoff) {
 
 TEST(Supervisor, StopIsLatchedUntilDisarmedOnTheGround) {
   Driven d = drivenTo(M::kAuto);
-  EXPECT_EQ(d.step(kFlying, R::kStop).mode, M::kEstop);
+  EXPECT_EQ(d.step(kFlying, R::kEstop).mode, M::kEstop);
   EXPECT_EQ(d.step(kFlying, R::kDisarm).mode, M::kEstop);
   EXPECT_EQ(d.step({}, R::kArm).mode, M::kEstop);
   EXPECT_EQ(d.step({}, R::kDisarm).mode, M::kStandby);
