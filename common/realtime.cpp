@@ -14,6 +14,14 @@ namespace {
 
 constexpr std::size_t kStackBytes = 256 * 1024;
 
+/// Where a user's limits come from depends on who starts the program: services do not read
+/// limits.d.
+std::string remedyOf(const std::string& item, const std::string& value, const std::string& unit) {
+  return "give it the right: started by hand, '@tautline - " + item + " " + value +
+         "' in /etc/security/limits.d/tautline.conf, then log in again; as a systemd service, " +
+         unit + " in its unit, then systemctl daemon-reload";
+}
+
 RealTimeStep done(std::string name) { return {true, std::move(name), ""}; }
 
 RealTimeStep failed(std::string name, int error, const std::string& remedy) {
@@ -27,9 +35,7 @@ RealTimeStep lockMemory() {
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    return failed(name, errno,
-                  "give the user the right: add '@tautline - memlock unlimited' to "
-                  "/etc/security/limits.conf");
+    return failed(name, errno, remedyOf("memlock", "unlimited", "LimitMEMLOCK=infinity"));
   }
   return done(name);
 }
@@ -48,15 +54,14 @@ RealTimeStep setAffinity(int cpu) {
   CPU_SET(static_cast<unsigned>(cpu), &set);
   // pthread functions return the error; they do not set errno.
   if (const int error = pthread_setaffinity_np(pthread_self(), sizeof(set), &set); error != 0) {
-    return failed(name, error, "choose a processor that exists (nproc) with realtime.cpu");
+    return failed(name, error, "choose a processor that exists (nproc) with realtime_cpu");
   }
   return done(name);
 }
 
 RealTimeStep setFifoPriority(int priority) {
   const std::string name = "SCHED_FIFO priority " + std::to_string(priority);
-  const std::string remedy =
-      "give the user the right: add '@tautline - rtprio 98' to /etc/security/limits.conf";
+  const std::string remedy = remedyOf("rtprio", "98", "LimitRTPRIO=98");
   sched_param wanted{};
   wanted.sched_priority = priority;
   if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted); error != 0) {

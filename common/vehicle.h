@@ -90,8 +90,8 @@ struct GroundReading {
   double battery_voltage{0};  ///< [V]
 };
 
-/// What is wrong with a link that is there, as far as the driver can tell. Each has its text and
-/// its remedy in app/station/events.h.
+/// What is wrong with a link, or why there is none, as far as the driver can tell. Each has its
+/// text and its remedy in app/station/events.h.
 enum class LinkFault : std::uint8_t {
   kNone,
   kSilent,            ///< Connected, and nothing is heard.
@@ -105,8 +105,19 @@ enum class LinkFault : std::uint8_t {
   kBusOff,            ///< The controller has left the bus after too many errors.
   kBusErrors,         ///< The controller sees errors: wrong bit rate, wiring, termination.
   kNoAcknowledge,     ///< Nobody acknowledges what the station sends: it is alone on the bus.
+  kPortMissing,       ///< The serial device is not there.
+  kPortBusy,          ///< Another program has it.
+  kPortPermission,    ///< The station may not use it.
+  kPortSettings,      ///< It does not take 8N1 at the configured rate.
+  kNotSerial,         ///< The path is something else than a serial device.
+  kRealDevice,        ///< A real device or bus where only an emulated one is allowed.
+  kNotCan,            ///< The interface is of another kind.
+  kNoCan,             ///< The kernel has no CAN, or hides it from the station.
+  kCanPermission,     ///< The station may not open CAN sockets.
+  kCanSettings,       ///< The kernel refuses filters or time stamps.
+  kPortFailed,        ///< It cannot be opened for another reason.
 };
-inline constexpr std::array<EnumName<LinkFault>, 12> kLinkFaultNames{
+inline constexpr std::array<EnumName<LinkFault>, 23> kLinkFaultNames{
     {{LinkFault::kNone, "none"},
      {LinkFault::kSilent, "silent"},
      {LinkFault::kGarbage, "garbage"},
@@ -118,7 +129,18 @@ inline constexpr std::array<EnumName<LinkFault>, 12> kLinkFaultNames{
      {LinkFault::kInterfaceDown, "interface down"},
      {LinkFault::kBusOff, "bus-off"},
      {LinkFault::kBusErrors, "bus errors"},
-     {LinkFault::kNoAcknowledge, "no acknowledge"}}};
+     {LinkFault::kNoAcknowledge, "no acknowledge"},
+     {LinkFault::kPortMissing, "port missing"},
+     {LinkFault::kPortBusy, "port busy"},
+     {LinkFault::kPortPermission, "port permission"},
+     {LinkFault::kPortSettings, "port settings"},
+     {LinkFault::kNotSerial, "not serial"},
+     {LinkFault::kRealDevice, "real device"},
+     {LinkFault::kNotCan, "not CAN"},
+     {LinkFault::kNoCan, "no CAN"},
+     {LinkFault::kCanPermission, "CAN permission"},
+     {LinkFault::kCanSettings, "CAN settings"},
+     {LinkFault::kPortFailed, "port failed"}}};
 
 /// Counters of a device's link, for telemetry and arming checks. A line is a message of the
 /// device's protocol, of text or not.
@@ -139,8 +161,14 @@ struct LinkStatus {
   std::uint32_t check_errors{0};    ///< Wrong CRC, size or value.
   std::uint32_t timeouts{0};        ///< Times that a message was missing for three periods.
   /// @}
-  std::uint32_t bus_errors{0};  ///< Error frames of a CAN controller.
-  std::uint32_t bus_off{0};     ///< Times that it went off the bus.
+  /// @name The bus below them, where there is one
+  /// @{
+  std::uint32_t bus_errors{0};      ///< Error frames of a CAN controller.
+  std::uint32_t bus_off{0};         ///< Times that it went off the bus.
+  std::uint32_t frames_lost{0};     ///< Given up by the kernel because nobody read in time.
+  std::uint32_t frames_foreign{0};  ///< Whole, and none of ours.
+  std::uint32_t no_buffer{0};       ///< Frames that the kernel had no room to send.
+  /// @}
 };
 
 /// Everything the core sees of the hardware in one cycle.

@@ -59,7 +59,7 @@ class FramePort {
   /// Of the bytes that came in, those of plain text: where the port sees a stream of bytes.
   [[nodiscard]] virtual std::uint64_t textBytes() const noexcept { return 0; }
 
-  /// What is known to be wrong below the messages; kNone if nothing is.
+  /// What is known to be wrong below the messages, or why there is no link; kNone if nothing is.
   [[nodiscard]] virtual LinkFault fault() const noexcept = 0;
 };
 

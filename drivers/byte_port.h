@@ -10,6 +10,7 @@
 #include <span>
 
 #include "common/time.h"
+#include "common/vehicle.h"
 
 namespace tautline {
 
@@ -52,6 +53,9 @@ class BytePort {
 
   [[nodiscard]] virtual bool connected() const noexcept = 0;
   [[nodiscard]] virtual PortCounters counters() const noexcept = 0;
+
+  /// Why there is no link; kNone while connected.
+  [[nodiscard]] virtual LinkFault fault() const noexcept = 0;
 };
 
 }  // namespace tautline

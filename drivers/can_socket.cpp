@@ -17,7 +17,6 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "common/error.h"
@@ -25,11 +24,14 @@
 namespace tautline {
 namespace {
 
-constexpr Duration kOldestStamp = std::chrono::seconds(1);
+/// Two clocks are read one after the other, and the loop may be interrupted in between.
+constexpr Duration kClockSlack = std::chrono::milliseconds(1);
 constexpr Duration kBusErrorShown = std::chrono::seconds(1);
 /// Everything but lost arbitration, which is how a healthy bus works.
 constexpr can_err_mask_t kErrorClasses =
     CAN_ERR_MASK & ~static_cast<can_err_mask_t>(CAN_ERR_LOSTARB);
+/// An identifier of 11 bits in a frame that is neither extended nor a request.
+constexpr canid_t kWholeId = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
 
 Duration durationOf(const timespec& t) noexcept {
   return std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec);
@@ -40,11 +42,32 @@ bool setOption(int fd, int level, int name, const T& value) noexcept {
   return setsockopt(fd, level, name, &value, sizeof(value)) == 0;
 }
 
-bool isRawCan(int fd) noexcept {
-  int domain = 0;
-  socklen_t size = sizeof(domain);
-  return getsockopt(fd, SOL_SOCKET, SO_DOMAIN, &domain, &size) == 0 && domain == AF_CAN;
-}
+/// What comes with a frame.
+struct Packet {
+  std::optional<timespec> stamp;       ///< Of CLOCK_REALTIME.
+  std::optional<std::uint32_t> drops;  ///< That the socket has given up so far.
+
+  /// As recvmsg(), without waiting.
+  ssize_t receive(int fd, can_frame& frame) noexcept {
+    iovec part{&frame, sizeof(frame)};
+    alignas(cmsghdr) std::array<char, 128> control{};
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    const ssize_t size = ::recvmsg(fd, &message, MSG_DONTWAIT);
+    if (size < 0) return size;
+    for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
+      if (c->cmsg_level != SOL_SOCKET) continue;
+      if (c->cmsg_type == SCM_TIMESTAMPNS)
+        std::memcpy(&stamp.emplace(), CMSG_DATA(c), sizeof(timespec));
+      else if (c->cmsg_type == SO_RXQ_OVFL)
+        std::memcpy(&drops.emplace(), CMSG_DATA(c), sizeof(std::uint32_t));
+    }
+    return size;
+  }
+};
 
 /// Whether the driver behind the interface is one without a bus of its own.
 bool isVirtual(int fd, ifreq request) noexcept {
@@ -56,42 +79,12 @@ bool isVirtual(int fd, ifreq request) noexcept {
   return driver == "vcan" || driver == "vxcan" || driver == "slcan";
 }
 
-std::string reasonText(CanStatus status, int error, const std::string& name) {
-  const std::string bring_up = "ip link set " + name + " up type can bitrate 500000 restart-ms 100";
-  switch (status) {
-    case CanStatus::kOpen:
-      return {};
-    case CanStatus::kNoCan:
-      return name +
-             ": this kernel has no CAN, or the program may not use it; as root: modprobe can-raw "
-             "(in a systemd unit: RestrictAddressFamilies must have AF_CAN)";
-    case CanStatus::kNoSuchInterface:
-      return name +
-             ": no such interface; plug the adapter in or set can.interface (ip -brief link show "
-             "type can), then as root: " +
-             bring_up;
-    case CanStatus::kNotCan:
-      return name + ": is no CAN interface; set can.interface (ip -brief link show type can)";
-    case CanStatus::kDown:
-      return name + ": is down; as root: " + bring_up + " (vcan: ip link set " + name + " up)";
-    case CanStatus::kPermission:
-      return name + ": permission denied; run it as a user who may open CAN sockets";
-    case CanStatus::kRealDevice:
-      return name +
-             ": is a real bus, and only a virtual one is allowed; set run_mode = \"REAL\" to use "
-             "it";
-    case CanStatus::kSettings:
-      return name + ": filters or time stamps did not take; update the kernel";
-    case CanStatus::kClosed:
-      return name + ": the other end is gone; start it again";
-    case CanStatus::kFailed:
-      break;
-  }
-  return name + ": cannot open: " + std::generic_category().message(error) + "; see `ip -details " +
-         "link show " + name + "`";
-}
-
 }  // namespace
+
+Time arrivalOf(Duration age, Time now, Time earliest) noexcept {
+  const Time arrived = now - age;
+  return arrived < earliest || arrived > now ? now : arrived;
+}
 
 CanSocket::CanSocket(CanConfig config, std::span<const std::uint16_t> ids)
     : config_(std::move(config)), id_count_(ids.size()) {
@@ -99,28 +92,39 @@ CanSocket::CanSocket(CanConfig config, std::span<const std::uint16_t> ids)
   std::copy(ids.begin(), ids.end(), ids_.begin());
 }
 
-CanSocket::~CanSocket() {
-  if (fd_ >= 0) ::close(fd_);
+CanSocket::~CanSocket() { close(); }
+
+void CanSocket::close() noexcept {
+  for (int* fd : {&fd_, &foreign_})
+    if (*fd >= 0) ::close(std::exchange(*fd, -1));
 }
 
 CanOpenResult CanSocket::open() {
-  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  close();
   status_ = tryOpen();
-  return {status_, reasonText(status_, error_, config_.interface)};
+  return {status_, describe(status_, error_, config_.interface)};
 }
 
 CanOpenResult CanSocket::adopt(int fd) {
-  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  close();
   const int flags = fcntl(fd, F_GETFL);
-  raw_can_ = isRawCan(fd);
   const bool ok = flags >= 0 && fcntl(fd, F_SETFL, flags | O_NONBLOCK) == 0 &&
-                  fcntl(fd, F_SETFD, FD_CLOEXEC) == 0 && setOptions(fd);
+                  fcntl(fd, F_SETFD, FD_CLOEXEC) == 0 &&
+                  setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1);
   status_ = ok ? CanStatus::kOpen : failed(CanStatus::kFailed);
-  if (ok) {
-    fd_ = fd;
-    was_connected_ = true;
-  }
-  return {status_, reasonText(status_, error_, config_.interface)};
+  if (ok) taken(fd, -1);
+  return {status_, describe(status_, error_, config_.interface)};
+}
+
+/// From here on `fd` is the link.
+void CanSocket::taken(int fd, int foreign) noexcept {
+  fd_ = fd;
+  foreign_ = foreign;
+  was_connected_ = true;
+  kernel_drops_ = foreign_drops_ = 0;
+  bus_fault_ = LinkFault::kNone;
+  bus_error_.reset();
+  empty_since_ = now_;
 }
 
 CanStatus CanSocket::failed(CanStatus fallback) noexcept {
@@ -158,55 +162,59 @@ CanStatus CanSocket::checkInterface(int fd, int& index) noexcept {
   return (request.ifr_flags & IFF_UP) != 0 ? CanStatus::kOpen : CanStatus::kDown;
 }
 
-bool CanSocket::setFilters(int fd, bool all) noexcept {
-  std::array<can_filter, kMaxIds> filters{};
-  for (std::size_t i = 0; i < id_count_; ++i)
-    filters[i] = {ids_[i], CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG};
-  if (all) filters[0] = {0, 0};
-  const auto size = static_cast<socklen_t>((all ? 1 : id_count_) * sizeof(can_filter));
-  listens_to_all_ = all;
-  return setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) == 0;
-}
-
 /// Filters, error frames, time stamps and the count of lost frames; read back.
-bool CanSocket::setOptions(int fd) noexcept {
-  const int on = 1;
-  kernel_drops_ = 0;
-  bus_fault_ = LinkFault::kNone;
-  bus_error_.reset();
-  last_ours_ = now_;
-  listens_to_all_ = false;
-  if (!raw_can_) return setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, on);
-  if (!setFilters(fd, false) || !setOption(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorClasses) ||
-      !setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, on) || !setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, on))
+bool CanSocket::setOptions(int fd) const noexcept {
+  std::array<can_filter, kMaxIds> filters{};
+  for (std::size_t i = 0; i < id_count_; ++i) filters[i] = {ids_[i], kWholeId};
+  auto size = static_cast<socklen_t>(id_count_ * sizeof(can_filter));
+  if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) != 0 ||
+      !setOption(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorClasses) ||
+      !setOption(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1) || !setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, 1))
     return false;
   int stamps = 0;
-  socklen_t size = sizeof(stamps);
+  size = sizeof(stamps);
   if (getsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &stamps, &size) != 0 || stamps == 0) return false;
-  std::array<can_filter, kMaxIds> filters{};
   size = sizeof(filters);
   return getsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), &size) == 0 &&
          size == id_count_ * sizeof(can_filter);
 }
 
+/// Hears what is none of ours, and keeps a handful: the rest the kernel only counts. Set once:
+/// filters that change while the loop runs would wait for the lock of the kernel's network
+/// settings.
+bool CanSocket::setForeignOptions(int fd) const noexcept {
+  std::array<can_filter, kMaxIds> filters{};
+  for (std::size_t i = 0; i < id_count_; ++i) filters[i] = {ids_[i] | CAN_INV_FILTER, kWholeId};
+  const auto size = static_cast<socklen_t>(id_count_ * sizeof(can_filter));
+  return setOption(fd, SOL_CAN_RAW, CAN_RAW_JOIN_FILTERS, 1) &&
+         setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) == 0 &&
+         setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
+         setOption(fd, SOL_SOCKET, SO_RCVBUF, 1);  // the kernel makes its least of it
+}
+
 CanStatus CanSocket::tryOpen() noexcept {
-  const int fd = ::socket(AF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
+  constexpr int kKind = SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  const int fd = ::socket(AF_CAN, kKind, CAN_RAW);
   if (fd < 0) return failed(CanStatus::kFailed);
-  raw_can_ = true;
+  const int foreign = ::socket(AF_CAN, kKind, CAN_RAW);
   sockaddr_can address{};
   address.can_family = AF_CAN;
-  CanStatus status = checkInterface(fd, address.can_ifindex);
-  if (status == CanStatus::kOpen && !setOptions(fd)) status = failed(CanStatus::kSettings);
-  if (status == CanStatus::kOpen &&
-      ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
+  const auto isBound = [&address](int socket) {
+    return ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  };
+  CanStatus status =
+      foreign < 0 ? failed(CanStatus::kFailed) : checkInterface(fd, address.can_ifindex);
+  if (status == CanStatus::kOpen && !(setOptions(fd) && setForeignOptions(foreign)))
+    status = failed(CanStatus::kSettings);
+  if (status == CanStatus::kOpen && !(isBound(fd) && isBound(foreign)))
     status = failed(CanStatus::kFailed);
   if (status != CanStatus::kOpen) {
     ::close(fd);
+    if (foreign >= 0) ::close(foreign);
     return status;
   }
-  fd_ = fd;
   if (was_connected_) ++counters_.reconnects;
-  was_connected_ = true;
+  taken(fd, foreign);
   return status;
 }
 
@@ -221,9 +229,7 @@ void CanSocket::poll(Time now) noexcept {
     return;
   }
   back_off_.reset();
-  if (last_ours_ == Time{}) last_ours_ = now;
-  const bool silent = now - last_ours_ > kListenAllAfter;
-  if (raw_can_ && silent != listens_to_all_) static_cast<void>(setFilters(fd_, silent));
+  countForeign();
   const bool over = bus_error_ && now - *bus_error_ > kBusErrorShown;
   if (over && bus_fault_ != LinkFault::kBusOff) bus_fault_ = LinkFault::kNone;
 }
@@ -231,7 +237,10 @@ void CanSocket::poll(Time now) noexcept {
 bool CanSocket::read(BusFrame& out) noexcept {
   while (connected() && budget_ > 0) {
     can_frame frame{};
-    if (!receive(frame, out.time)) return false;
+    if (!receive(frame, out.time)) {
+      empty_since_ = now_;
+      return false;
+    }
     --budget_;
     if ((frame.can_id & CAN_ERR_FLAG) != 0) {
       takeErrorFrame(frame);
@@ -244,7 +253,6 @@ bool CanSocket::read(BusFrame& out) noexcept {
       continue;
     }
     ++frames_.frames_in;
-    last_ours_ = now_;
     out.id = static_cast<std::uint16_t>(frame.can_id);
     out.size = std::min<std::uint8_t>(frame.can_dlc, CAN_MAX_DLEN);
     out.data.fill(0);
@@ -256,14 +264,8 @@ bool CanSocket::read(BusFrame& out) noexcept {
 
 /// One packet; false if there is none, or none that is a frame.
 bool CanSocket::receive(can_frame& frame, Time& stamp) noexcept {
-  iovec part{&frame, sizeof(frame)};
-  alignas(cmsghdr) std::array<char, 128> control{};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control.data();
-  message.msg_controllen = control.size();
-  const ssize_t size = ::recvmsg(fd_, &message, MSG_DONTWAIT);
+  Packet packet;
+  const ssize_t size = packet.receive(fd_, frame);
   if (size != static_cast<ssize_t>(sizeof(frame))) {
     if (size < 0 && (errno == EAGAIN || errno == EINTR)) return false;
     if (size > 0) {
@@ -274,20 +276,24 @@ bool CanSocket::receive(can_frame& frame, Time& stamp) noexcept {
     return false;
   }
   stamp = now_;
-  for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
-    if (c->cmsg_level != SOL_SOCKET) continue;
-    if (c->cmsg_type == SCM_TIMESTAMPNS) {
-      timespec t{};
-      std::memcpy(&t, CMSG_DATA(c), sizeof(t));
-      stamp = std::clamp(Time(durationOf(t) - to_realtime_), now_ - kOldestStamp, now_);
-    } else if (c->cmsg_type == SO_RXQ_OVFL) {
-      std::uint32_t drops = 0;
-      std::memcpy(&drops, CMSG_DATA(c), sizeof(drops));
-      frames_.frames_lost += drops - kernel_drops_;
-      kernel_drops_ = drops;
-    }
+  if (packet.stamp) {
+    const Duration age = now_ + to_realtime_ - Time(durationOf(*packet.stamp));
+    stamp = arrivalOf(age, now_, empty_since_ - kClockSlack);
   }
+  if (packet.drops)
+    frames_.frames_lost += *packet.drops - std::exchange(kernel_drops_, *packet.drops);
   return true;
+}
+
+void CanSocket::countForeign() noexcept {
+  can_frame frame{};
+  for (int i = 0; i < kForeignPerCycle && foreign_ >= 0; ++i) {
+    Packet packet;
+    if (packet.receive(foreign_, frame) <= 0) return;  // the link's own socket tells what is lost
+    ++frames_.frames_foreign;
+    if (packet.drops)
+      frames_.frames_foreign += *packet.drops - std::exchange(foreign_drops_, *packet.drops);
+  }
 }
 
 bool CanSocket::isOurs(std::uint32_t can_id) const noexcept {
@@ -338,15 +344,11 @@ bool CanSocket::write(const BusFrame& frame) noexcept {
 }
 
 void CanSocket::lose(int error) noexcept {
-  ::close(fd_);
-  fd_ = -1;
+  close();
   errno = error;
   status_ = failed(CanStatus::kClosed);
 }
 
-LinkFault CanSocket::fault() const noexcept {
-  if (connected()) return bus_fault_;
-  return status_ == CanStatus::kDown ? LinkFault::kInterfaceDown : LinkFault::kInterfaceMissing;
-}
+LinkFault CanSocket::fault() const noexcept { return connected() ? bus_fault_ : faultOf(status_); }
 
 }  // namespace tautline

@@ -15,6 +15,7 @@
 #include "common/fields.h"
 #include "drivers/back_off.h"
 #include "drivers/bus_frame.h"
+#include "drivers/can_status.h"
 
 struct can_frame;
 
@@ -32,19 +33,6 @@ struct CanConfig {
   }
 };
 
-enum class CanStatus : std::uint8_t {
-  kOpen,
-  kNoCan,            ///< The kernel has no CAN, or this program may not use it.
-  kNoSuchInterface,  ///< Also: was there and has been deleted.
-  kNotCan,           ///< An interface of another kind.
-  kDown,             ///< There, and switched off.
-  kPermission,
-  kRealDevice,  ///< Only a virtual interface is allowed, and this is none.
-  kSettings,    ///< Filters or time stamps did not read back as set.
-  kClosed,      ///< The far end of an adopted socket pair is gone.
-  kFailed,      ///< Anything else; errno tells.
-};
-
 /// What open() found. Not real-time safe: start-up only.
 struct CanOpenResult {
   CanStatus status{CanStatus::kOpen};
@@ -52,6 +40,12 @@ struct CanOpenResult {
 
   explicit operator bool() const noexcept { return status == CanStatus::kOpen; }
 };
+
+/// When a frame arrived that was `age` old by the clock of its stamp at the time `now`, and cannot
+/// have come before `earliest`. That clock may be stepped in between; an age that is impossible
+/// then is not believed, and the frame is as new as the cycle that reads it. Real-time safe: no
+/// allocation, no locks, no exceptions.
+[[nodiscard]] Time arrivalOf(Duration age, Time now, Time earliest) noexcept;
 
 /// Invariant: fd_ is a non-blocking descriptor exactly while connected().
 /// All but the constructor, open() and adopt(): real-time safe: no allocation, no locks, no
@@ -62,9 +56,8 @@ class CanSocket final : public FramePort {
   /// Frames taken from the kernel in one cycle at most, of whatever kind; what is left waits for
   /// the next cycle. A full bus at 500 kbit/s has fewer than 50 in 10 ms.
   static constexpr int kFramesPerCycle = 64;
-  /// Without any of our frames for this long, the filters are opened, so that a bus that speaks
-  /// something else can be told from a silent one; the next one of ours closes them.
-  static constexpr Duration kListenAllAfter = std::chrono::seconds(1);
+  /// Frames of others that are looked at in one cycle; beyond them the kernel counts.
+  static constexpr int kForeignPerCycle = 8;
 
   /// `ids`: what is to be received, at most kMaxIds.
   CanSocket(CanConfig config, std::span<const std::uint16_t> ids);
@@ -74,14 +67,15 @@ class CanSocket final : public FramePort {
   /// choose to go on. Not real-time safe: start-up only.
   [[nodiscard]] CanOpenResult open();
 
-  /// Takes over `fd`, opened by someone else: a CAN_RAW socket, or one end of a SOCK_SEQPACKET pair
-  /// that carries one can_frame a packet. When it goes away, poll() opens the configured interface;
+  /// Takes over `fd`, opened by someone else: one end of a SOCK_SEQPACKET pair that carries one
+  /// can_frame a packet. When it goes away, poll() opens the configured interface;
   /// an empty name means never. Not real-time safe: start-up only.
   [[nodiscard]] CanOpenResult adopt(int fd);
 
   void poll(Time now) noexcept override;
 
-  /// `out.time` is the kernel's time stamp on the clock of `now` in poll(), never later than `now`.
+  /// `out.time` is the kernel's time stamp on the clock of `now` in poll(), never later than `now`;
+  /// see arrivalOf().
   [[nodiscard]] bool read(BusFrame& out) noexcept override;
 
   /// False, and counted in FrameCounters::no_buffer, while the kernel has no room: an unplugged or
@@ -99,8 +93,11 @@ class CanSocket final : public FramePort {
  private:
   [[nodiscard]] CanStatus tryOpen() noexcept;
   [[nodiscard]] CanStatus checkInterface(int fd, int& index) noexcept;
-  [[nodiscard]] bool setOptions(int fd) noexcept;
-  [[nodiscard]] bool setFilters(int fd, bool all) noexcept;
+  [[nodiscard]] bool setOptions(int fd) const noexcept;
+  [[nodiscard]] bool setForeignOptions(int fd) const noexcept;
+  void taken(int fd, int foreign) noexcept;
+  void close() noexcept;
+  void countForeign() noexcept;
   [[nodiscard]] CanStatus failed(CanStatus fallback) noexcept;
   [[nodiscard]] bool receive(can_frame& frame, Time& stamp) noexcept;
   [[nodiscard]] bool isOurs(std::uint32_t can_id) const noexcept;
@@ -113,8 +110,8 @@ class CanSocket final : public FramePort {
   PortCounters counters_;
   FrameCounters frames_;
   int fd_{-1};
-  bool raw_can_{false};  ///< fd_ is a CAN_RAW socket.
-  int error_{0};         ///< errno of the last failed attempt.
+  int foreign_{-1};  ///< A second socket that hears all but our identifiers; -1 on an adopted pair.
+  int error_{0};     ///< errno of the last failed attempt.
   bool was_connected_{false};
   CanStatus status_{CanStatus::kNoSuchInterface};
   BackOff back_off_;
@@ -122,10 +119,10 @@ class CanSocket final : public FramePort {
   Time now_{};
   Duration to_realtime_{};  ///< From the loop's clock to CLOCK_REALTIME, that of the time stamps.
   int budget_{0};
-  Time last_ours_{};
-  bool listens_to_all_{false};
-  std::uint32_t kernel_drops_{0};  ///< Of this socket.
-  std::optional<Time> bus_error_;  ///< Last error frame that says the bus is in trouble.
+  Time empty_since_{};              ///< When read() last found nothing, or the socket was made.
+  std::uint32_t kernel_drops_{0};   ///< Of this socket.
+  std::uint32_t foreign_drops_{0};  ///< Of the second one.
+  std::optional<Time> bus_error_;   ///< Last error frame that says the bus is in trouble.
   LinkFault bus_fault_{LinkFault::kNone};
 };
 

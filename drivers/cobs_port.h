@@ -27,7 +27,7 @@ class CobsPort final : public FramePort {
   [[nodiscard]] bool connected() const noexcept override { return bytes_.connected(); }
   [[nodiscard]] PortCounters counters() const noexcept override { return bytes_.counters(); }
   [[nodiscard]] FrameCounters frameCounters() const noexcept override;
-  [[nodiscard]] LinkFault fault() const noexcept override { return LinkFault::kNone; }
+  [[nodiscard]] LinkFault fault() const noexcept override { return bytes_.fault(); }
   [[nodiscard]] std::uint64_t textBytes() const noexcept override { return text_bytes_; }
 
   /// Frames by outcome since start.

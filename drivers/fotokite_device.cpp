@@ -110,11 +110,12 @@ void FotokiteDevice::read(Time now, SensorFrame& frame) noexcept {
                       }
                     });
   }
-  fault_ = monitor_.update(now, {.connected = port_.connected(),
-                                 .bytes = port_.counters().bytes_in,
-                                 .text_bytes = text_bytes_,
-                                 .good = lines_.good(),
-                                 .bad = lines_.bad()});
+  const LinkFault heard = monitor_.update(now, {.connected = port_.connected(),
+                                                .bytes = port_.counters().bytes_in,
+                                                .text_bytes = text_bytes_,
+                                                .good = lines_.good(),
+                                                .bad = lines_.bad()});
+  fault_ = port_.connected() ? heard : port_.fault();
   frame.link = status();
 }
 

@@ -223,4 +223,27 @@ void SerialPort::disconnect() noexcept {
 
 PortCounters SerialPort::counters() const noexcept { return counters_; }
 
+LinkFault SerialPort::fault() const noexcept {
+  switch (status_) {
+    case SerialStatus::kOpen:
+      return LinkFault::kNone;
+    case SerialStatus::kNoSuchDevice:
+    case SerialStatus::kUnplugged:
+      return LinkFault::kPortMissing;
+    case SerialStatus::kPermission:
+      return LinkFault::kPortPermission;
+    case SerialStatus::kBusy:
+      return LinkFault::kPortBusy;
+    case SerialStatus::kNotATty:
+      return LinkFault::kNotSerial;
+    case SerialStatus::kRealDevice:
+      return LinkFault::kRealDevice;
+    case SerialStatus::kSettings:
+      return LinkFault::kPortSettings;
+    case SerialStatus::kFailed:
+      break;
+  }
+  return LinkFault::kPortFailed;
+}
+
 }  // namespace tautline

@@ -73,6 +73,7 @@ class SerialPort final : public BytePort {
   WriteResult write(std::span<const std::uint8_t> message) noexcept override;
   [[nodiscard]] bool connected() const noexcept override { return fd_ >= 0; }
   [[nodiscard]] PortCounters counters() const noexcept override;
+  [[nodiscard]] LinkFault fault() const noexcept override;
 
   /// Why the last attempt to open failed, or kUnplugged, or kOpen.
   [[nodiscard]] SerialStatus status() const noexcept { return status_; }

@@ -268,7 +268,10 @@ LinkStatus TautlineDevice::status() const noexcept {
           .check_errors = errors,
           .timeouts = timeouts_,
           .bus_errors = frames.bus_errors,
-          .bus_off = frames.bus_off};
+          .bus_off = frames.bus_off,
+          .frames_lost = frames.frames_lost,
+          .frames_foreign = frames.frames_foreign,
+          .no_buffer = frames.no_buffer};
 }
 
 }  // namespace tautline

@@ -79,6 +79,7 @@ Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
   telemetry_ = std::make_unique<Telemetry>(*sink_, config_.run_mode, Duration::zero(),
                                            fromSeconds(1.0 / config_.telemetry_rate_hz));
   telemetry_->setParams("tautline-bench", kVersion, dumpConfig(config_));
+  telemetry_->setPlace("simulator");
   telemetry_->publishParams(now_);
 }
 

@@ -19,6 +19,9 @@ class MemoryPort final : public BytePort {
   WriteResult write(std::span<const std::uint8_t> message) noexcept override;
   [[nodiscard]] bool connected() const noexcept override { return connected_; }
   [[nodiscard]] PortCounters counters() const noexcept override { return counters_; }
+  [[nodiscard]] LinkFault fault() const noexcept override {
+    return connected_ ? LinkFault::kNone : LinkFault::kPortMissing;
+  }
 
   void unplug() noexcept { connected_ = false; }
   void plug() noexcept;

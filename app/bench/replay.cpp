@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include <tautline/params_t.hpp>
 
 #include "app/station/input_message.h"
+#include "app/station/log_version.h"
 #include "app/station/telemetry.h"
 #include "common/error.h"
 #include "common/toml/config_file.h"
@@ -47,7 +50,7 @@ using ChunkKey = std::pair<std::int64_t, std::int32_t>;
 
 /// What a first pass over the log collects.
 struct Contents {
-  std::optional<StationConfig> config;
+  StationConfig config;
   std::map<ChunkKey, tautline::mission_chunk_t> chunks;
   std::vector<tautline::station_input_t> inputs;
   std::map<std::int64_t, std::vector<std::uint8_t>> commands;  ///< Payloads by utime.
@@ -58,16 +61,19 @@ Contents readLog(const std::filesystem::path& path) {
   if (!log.good())
     throw InputError({.file = path.string(), .problem = "cannot be read as an LCM log"});
   Contents out;
+  std::optional<std::string> config;
+  LogVersion version;
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     const auto* data = static_cast<const std::uint8_t*>(event->data);
     const auto decode = [&](auto& message) {
-      return message.decode(event->data, 0, event->datalen) >= 0;
+      return version.fits<std::remove_reference_t<decltype(message)>>(*event) &&
+             message.decode(event->data, 0, event->datalen) >= 0;
     };
     tautline::params_t params;
     tautline::mission_chunk_t chunk;
     tautline::station_input_t input;
-    if (event->channel == channel::kParams && !out.config && decode(params)) {
-      out.config = parseConfig<StationConfig>(params.toml, path.string() + " (PARAMS)");
+    if (event->channel == channel::kParams && !config && decode(params)) {
+      config = params.toml;
     } else if (event->channel == channel::kMissionChunk && decode(chunk)) {
       out.chunks[{chunk.session, chunk.sequence}] = chunk;
     } else if (event->channel == channel::kStationInput && decode(input)) {
@@ -78,11 +84,13 @@ Contents readLog(const std::filesystem::path& path) {
         out.commands[command.utime] = payloadOf({data, static_cast<std::size_t>(event->datalen)});
     }
   }
-  if (!out.config || out.inputs.empty()) {
+  version.check(path);
+  if (!config || out.inputs.empty()) {
     throw InputError({.file = path.string(),
                       .problem = "has no PARAMS or no STATION_INPUT messages",
                       .remedy = "record all channels from the station's start on"});
   }
+  out.config = parseConfig<StationConfig>(*config, path.string() + " (PARAMS)");
   return out;
 }
 
@@ -90,10 +98,10 @@ Contents readLog(const std::filesystem::path& path) {
 
 ReplayResult replay(const std::filesystem::path& path, const Playback& playback) {
   const Contents log = readLog(path);
-  const auto station = std::make_unique<Station>(log.config->core);
+  const auto station = std::make_unique<Station>(log.config.core);
   CommandCatcher catcher;
   // State messages every cycle: whichever cycle a recorded command is from, it can be compared.
-  Telemetry telemetry(catcher, log.config->run_mode, Duration::zero(), Duration::zero());
+  Telemetry telemetry(catcher, log.config.run_mode, Duration::zero(), Duration::zero());
 
   ReplayResult result;
   PlaybackClock clock(playback);

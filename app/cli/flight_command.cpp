@@ -221,6 +221,26 @@ ExitCode navigate(const Options& options) {
   return ExitCode::kFailed;
 }
 
+nlohmann::json linkCounters(const tautline::vehicle_state_t& v) {
+  return {{"place", v.link_place},
+          {"connected", v.link_connected != 0},
+          {"bytes_in", v.link_bytes_in},
+          {"bytes_out", v.link_bytes_out},
+          {"lines_ok", v.link_lines_ok},
+          {"lines_bad", v.link_lines_bad},
+          {"bytes_dropped", v.link_bytes_dropped},
+          {"reconnects", v.link_reconnects},
+          {"repeated", v.link_repeated},
+          {"wrong_sequence", v.link_wrong_sequence},
+          {"check_errors", v.link_check_errors},
+          {"timeouts", v.link_timeouts},
+          {"bus_errors", v.link_bus_errors},
+          {"bus_off", v.link_bus_off},
+          {"frames_lost", v.link_frames_lost},
+          {"frames_foreign", v.link_frames_foreign},
+          {"no_buffer", v.link_no_buffer}};
+}
+
 ExitCode status(const Options& options) {
   StationClient client(options.lcm_url);
   const auto& v = client.view();
@@ -250,7 +270,8 @@ ExitCode status(const Options& options) {
                                       {"tension_n", v.tether->tension_n},
                                       {"vehicle", phase},
                                       {"battery_v", v.vehicle->ground_battery_v},
-                                      {"link_fault", nameOf(fault, kLinkFaultNames)}}
+                                      {"link_fault", nameOf(fault, kLinkFaultNames)},
+                                      {"link", linkCounters(*v.vehicle)}}
                            .dump());
     return ExitCode::kOk;
   }
@@ -258,7 +279,9 @@ ExitCode status(const Options& options) {
   fmt::print("{:<10} {}\n", "conditions", conditions.empty() ? "none" : conditions);
   if (fault != LinkFault::kNone) {
     const EventText& text = textOf(eventOf(fault));
-    fmt::print("{:<10} {}; {}\n", "link", text.text, text.remedy);
+    std::string told;
+    appendText(told, fmt::format("{}; {}", text.text, text.remedy), v.vehicle->link_place);
+    fmt::print("{:<10} {}\n", "link", told);
   }
   fmt::print("{:<10} x {:.2f}  y {:.2f}  z {:.2f} m, {}\n", "position", v.estimate->position_m[0],
              v.estimate->position_m[1], v.estimate->position_m[2], health);

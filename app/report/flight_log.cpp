@@ -19,6 +19,7 @@
 #include <tautline/tether_state_t.hpp>
 #include <tautline/vehicle_state_t.hpp>
 
+#include "app/station/log_version.h"
 #include "common/error.h"
 #include "common/mission_plan.h"
 #include "lcmtypes/channels.h"
@@ -63,6 +64,11 @@ bool stringsAreSound(const lcm::LogEvent& event, const event_t*) {
 }
 bool stringsAreSound(const lcm::LogEvent& event, const params_t*) {
   return stringsFit(event, 8 + 8, 3);
+}
+bool stringsAreSound(const lcm::LogEvent& event, const vehicle_state_t*) {
+  constexpr int kEmptyString = 4 + 1;  // length and terminating zero
+  static const int strings_at = 8 + vehicle_state_t{}._getEncodedSizeNoHash() - kEmptyString;
+  return stringsFit(event, static_cast<std::size_t>(strings_at), 1);
 }
 bool stringsAreSound(const lcm::LogEvent&, const void*) { return true; }
 
@@ -111,7 +117,8 @@ class Reader {
     handlers_[name] = [this, name, add, clock](const lcm::LogEvent& event) {
       ChannelStats& stats = log_.channels[name];
       Message message{};
-      if (!stringsAreSound(event, static_cast<const Message*>(nullptr)) ||
+      if (!version_.fits<Message>(event) ||
+          !stringsAreSound(event, static_cast<const Message*>(nullptr)) ||
           message.decode(event.data, 0, event.datalen) < 0) {
         ++stats.undecodable;
         return;
@@ -145,6 +152,7 @@ class Reader {
       const auto handler = handlers_.find(event->channel);
       if (handler != handlers_.end()) handler->second(*event);
     }
+    version_.check(file_);
     const UtimeSpan& station = spans_[static_cast<std::size_t>(Clock::kStation)];
     const UtimeSpan& simulator = spans_[static_cast<std::size_t>(Clock::kSimulator)];
     const UtimeSpan& span = station.empty() ? simulator : station;
@@ -271,6 +279,7 @@ class Reader {
 
   std::filesystem::path file_;
   FlightLog log_;
+  LogVersion version_;
   std::map<std::string, std::function<void(const lcm::LogEvent&)>, std::less<>> handlers_;
   std::array<UtimeSpan, 3> spans_{};  // By Clock.
 };

@@ -171,8 +171,8 @@ struct FlightLog {
 };
 
 /// Reads a log written by lcm-logger or by the bench. Messages that do not decode and damaged
-/// places are counted. Throws InputError when the file cannot be read or holds no message of the
-/// station or the simulator.
+/// places are counted. Throws InputError when the file cannot be read, holds no message of the
+/// station or the simulator, or was recorded by a version with other messages.
 [[nodiscard]] FlightLog readFlightLog(const std::filesystem::path& file);
 
 }  // namespace tautline::report

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 #include "common/vehicle.h"
 #include "supervision/supervisor.h"
@@ -47,9 +49,21 @@ enum class EventCode : std::uint8_t {
   kLinkBusOff,
   kLinkBusErrors,
   kLinkNoAcknowledge,
+  kLinkPortMissing,
+  kLinkPortBusy,
+  kLinkPortPermission,
+  kLinkPortSettings,
+  kLinkNotSerial,
+  kLinkRealDevice,
+  kLinkNotCan,
+  kLinkNoCan,
+  kLinkCanPermission,
+  kLinkCanSettings,
+  kLinkPortFailed,
   kLinkFaultCleared,
 };
 
+/// In text and remedy {} stands for the serial device or CAN interface; appendText() puts it in.
 struct EventText {
   EventCode code;
   Severity severity;
@@ -58,7 +72,7 @@ struct EventText {
   const char* remedy;
 };
 
-inline constexpr std::array<EventText, 29> kEventTexts{{
+inline constexpr std::array<EventText, 40> kEventTexts{{
     {EventCode::kModeChanged, Severity::kInfo, "mode ", "", ""},
     {EventCode::kMissionCompleted, Severity::kInfo, "mission completed",
      "hovering at its last waypoint", ""},
@@ -106,25 +120,61 @@ inline constexpr std::array<EventText, 29> kEventTexts{{
      "no arming", "set reel, angle sensor and vehicle to one message every 10 ms"},
     {EventCode::kLinkAnotherStation, Severity::kCritical, "another station commands on this bus",
      "no arming", "stop the other tautline-station, or take it off the bus"},
-    {EventCode::kLinkInterfaceMissing, Severity::kError, "the CAN interface is not there",
+    {EventCode::kLinkInterfaceMissing, Severity::kError, "the CAN interface {} is not there",
      "no arming; trying again",
      "plug the adapter in; see `ip -brief link show type can`, and can.interface"},
-    {EventCode::kLinkInterfaceDown, Severity::kError, "the CAN interface is down",
+    {EventCode::kLinkInterfaceDown, Severity::kError, "the CAN interface {} is down",
      "no arming; trying again",
-     "as root: ip link set can0 up type can bitrate 500000 restart-ms 100"},
+     "as root: ip link set {} up type can bitrate 500000 restart-ms 100"},
     {EventCode::kLinkBusOff, Severity::kError, "the CAN controller is off the bus", "no arming",
-     "check wiring and bit rate; as root: ip link set can0 down; ip link set can0 up type can "
+     "check wiring and bit rate; as root: ip link set {} down; ip link set {} up type can "
      "bitrate 500000 restart-ms 100"},
     {EventCode::kLinkBusErrors, Severity::kError, "the CAN controller sees errors on the bus",
      "no arming", "check the bit rate (500000), wiring, and 120 ohm at both ends"},
     {EventCode::kLinkNoAcknowledge, Severity::kError, "nobody on the bus acknowledges", "no arming",
      "switch the devices on; then check wiring, bit rate and termination"},
+    {EventCode::kLinkPortMissing, Severity::kError, "the device {} is not there",
+     "no arming; trying again",
+     "plug it in and switch it on; see `ls -l /dev/serial/by-id`, and serial.device"},
+    {EventCode::kLinkPortBusy, Severity::kError, "another program has {}",
+     "no arming; trying again", "end that program; as root: fuser -v {}"},
+    {EventCode::kLinkPortPermission, Severity::kError, "the station may not use {}",
+     "no arming; trying again",
+     "as root: usermod -aG \"$(stat -Lc %G {})\" USER; then log in and start the station again"},
+    {EventCode::kLinkPortSettings, Severity::kError, "{} does not take 8N1 at serial.baud",
+     "no arming; trying again", "set serial.baud to a rate that the adapter offers"},
+    {EventCode::kLinkNotSerial, Severity::kError, "{} is no serial device",
+     "no arming; trying again", "set serial.device to one of `ls /dev/serial/by-id`"},
+    {EventCode::kLinkRealDevice, Severity::kCritical,
+     "{} is real, and run_mode allows only an emulated one", "not opened; trying again",
+     "unplug it, or set run_mode = \"REAL\" to use it"},
+    {EventCode::kLinkNotCan, Severity::kError, "{} is no CAN interface", "no arming; trying again",
+     "set can.interface to one of `ip -brief link show type can`"},
+    {EventCode::kLinkNoCan, Severity::kError, "this kernel has no CAN, or hides it",
+     "no arming; trying again",
+     "as root: modprobe can-raw; in a systemd unit RestrictAddressFamilies must have AF_CAN"},
+    {EventCode::kLinkCanPermission, Severity::kError, "the station may not open CAN sockets",
+     "no arming; trying again", "run it outside of the sandbox that forbids them"},
+    {EventCode::kLinkCanSettings, Severity::kError, "filters or time stamps of {} do not take",
+     "no arming; trying again", "update the kernel"},
+    {EventCode::kLinkPortFailed, Severity::kError, "{} cannot be opened", "no arming; trying again",
+     "check cable and name; `dmesg | tail` may say more"},
     {EventCode::kLinkFaultCleared, Severity::kInfo, "the link is in order again", "", ""},
 }};
 
 /// Real-time safe: no allocation, no locks, no exceptions.
 [[nodiscard]] constexpr const EventText& textOf(EventCode code) noexcept {
   return kEventTexts[static_cast<std::size_t>(code)];
+}
+
+/// Appends a text of the table. `place`: the serial device or CAN interface. Real-time safe while
+/// `out` has the capacity.
+inline void appendText(std::string& out, std::string_view text, std::string_view place) {
+  for (std::size_t hole = text.find("{}"); hole != text.npos; hole = text.find("{}")) {
+    out.append(text.substr(0, hole)).append(place);
+    text.remove_prefix(hole + 2);
+  }
+  out.append(text);
 }
 
 /// The event of a link's fault. Real-time safe: no allocation, no locks, no exceptions.
@@ -134,7 +184,7 @@ inline constexpr std::array<EventText, 29> kEventTexts{{
                                 static_cast<std::size_t>(fault) - 1);
 }
 static_assert(eventOf(LinkFault::kSilent) == EventCode::kLinkSilent &&
-              eventOf(LinkFault::kNoAcknowledge) == EventCode::kLinkNoAcknowledge);
+              eventOf(LinkFault::kPortFailed) == EventCode::kLinkPortFailed);
 
 static_assert(
     [] {

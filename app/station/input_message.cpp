@@ -127,7 +127,10 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
             static_cast<std::uint32_t>(m.link_check_errors),
             static_cast<std::uint32_t>(m.link_timeouts),
             static_cast<std::uint32_t>(m.link_bus_errors),
-            static_cast<std::uint32_t>(m.link_bus_off)};
+            static_cast<std::uint32_t>(m.link_bus_off),
+            static_cast<std::uint32_t>(m.link_frames_lost),
+            static_cast<std::uint32_t>(m.link_frames_foreign),
+            static_cast<std::uint32_t>(m.link_no_buffer)};
   return in;
 }
 

@@ -47,6 +47,9 @@ void putLink(Message& m, const LinkStatus& link) noexcept {
   m.link_timeouts = static_cast<std::int32_t>(link.timeouts);
   m.link_bus_errors = static_cast<std::int32_t>(link.bus_errors);
   m.link_bus_off = static_cast<std::int32_t>(link.bus_off);
+  m.link_frames_lost = static_cast<std::int32_t>(link.frames_lost);
+  m.link_frames_foreign = static_cast<std::int32_t>(link.frames_foreign);
+  m.link_no_buffer = static_cast<std::int32_t>(link.no_buffer);
 }
 
 }  // namespace tautline

@@ -126,6 +126,7 @@ void run(const Options& options) {
                       fromSeconds(1.0 / config.telemetry_rate_hz));
 
   telemetry.setParams("tautline-station", kVersion, effective);
+  telemetry.setPlace(made.place);
 
   ServiceNotifier service(serviceManagerFromEnvironment());
   if (!service.error().empty())

@@ -10,6 +10,7 @@
 #include <tautline/station_input_t.hpp>
 
 #include "app/station/input_message.h"
+#include "app/station/log_version.h"
 #include "common/error.h"
 #include "common/tether_geometry.h"
 #include "drivers/flight_log_codec.h"
@@ -26,15 +27,18 @@ Recording readLcmLog(const std::filesystem::path& file) {
   lcm::LogFile log(file.string(), "r");
   if (!log.good()) throw InputError({.file = file.string(), .problem = "cannot be read"});
   Recording out;
+  LogVersion version;
   while (const lcm::LogEvent* event = log.readNextEvent()) {
     tautline::station_input_t input;
     if (event->channel != channel::kStationInput ||
+        !version.fits<tautline::station_input_t>(*event) ||
         input.decode(event->data, 0, event->datalen) < 0)
       continue;
     StepInput in = inputOf(input);
     if (!out.cycles.empty() && in.now <= out.cycles.back().now) continue;
     out.cycles.push_back({in.now, in.sensors});
   }
+  version.check(file);
   return out;
 }
 
@@ -123,7 +127,7 @@ Recording readRecording(const std::filesystem::path& file) {
   Recording out = is_lcm ? readLcmLog(file) : readTextLog(file);
   if (out.cycles.empty()) {
     throw InputError({.file = file.string(),
-                      .problem = is_lcm ? "has no STATION_INPUT messages of this version"
+                      .problem = is_lcm ? "has no STATION_INPUT messages"
                                         : "has no row of a flight log (22 or 19 numbers)",
                       .remedy = "record all channels with lcm-logger, or name a flight log"});
   }

@@ -34,7 +34,7 @@ Int as(T value) noexcept {
 Telemetry::Telemetry(TelemetrySink& sink, RunMode run_mode, Duration unix_offset,
                      Duration state_period)
     : sink_(sink), run_mode_(run_mode), unix_offset_(unix_offset), state_period_(state_period) {
-  for (std::string* text : {&event_.text, &event_.reaction, &event_.remedy}) text->reserve(256);
+  setPlace("");
 }
 
 template <class Message>
@@ -115,7 +115,7 @@ void Telemetry::sendTether(const StepInput& in, const StepOutput& out) noexcept 
 
 void Telemetry::sendVehicle(const StepInput& in) noexcept {
   const SensorFrame& f = in.sensors;
-  tautline::vehicle_state_t m{};
+  tautline::vehicle_state_t& m = vehicle_;
   m.phase = as<std::int8_t>(f.vehicle.value.phase);
   m.flight_mode = f.vehicle.value.flight_mode;
   m.flags = f.vehicle.value.flags;
@@ -187,8 +187,10 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
   const EventText& text = textOf(event.code);
   event_.severity = as<std::int8_t>(text.severity);
   event_.code = as<std::int32_t>(event.code);
-  // assign() and append() stay inside the reserved capacity: no allocation.
-  event_.text.assign(text.text);
+  // What follows stays inside the reserved capacity: no allocation.
+  const std::string& place = vehicle_.link_place;
+  event_.text.clear();
+  appendText(event_.text, text.text, place);
   if (event.code == EventCode::kModeChanged) {
     event_.text.append(nameOf(event.mode, kModeNames));
     const char* separator = " because of ";
@@ -199,7 +201,8 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
     }
   }
   event_.reaction.assign(text.reaction);
-  event_.remedy.assign(text.remedy);
+  event_.remedy.clear();
+  appendText(event_.remedy, text.remedy, place);
   send(channel::kEvent, event_, now);
 }
 
@@ -226,6 +229,14 @@ void Telemetry::setParams(const std::string& program, const std::string& version
   params_.version = version;
   params_.toml = toml;
   params_buffer_.resize(as<std::size_t>(params_.getEncodedSize()));
+}
+
+void Telemetry::setPlace(const std::string& place) {
+  constexpr std::size_t kLongestText = 512;  // with the names of all conditions, or without {}
+  constexpr std::size_t kHoles = 2;
+  vehicle_.link_place = place;
+  for (std::string* text : {&event_.text, &event_.reaction, &event_.remedy})
+    text->reserve(kLongestText + kHoles * place.size());
 }
 
 void Telemetry::publishParams(Time now) noexcept {

@@ -61,6 +61,10 @@ class Telemetry {
   /// What publishParams() says. Not real-time safe: start-up only.
   void setParams(const std::string& program, const std::string& version, const std::string& toml);
 
+  /// Serial device, CAN interface or recording, for VEHICLE_STATE and the texts of events. Not
+  /// real-time safe: start-up only.
+  void setPlace(const std::string& place);
+
   /// The effective configuration, at start and now and then, so that a log that began late has it
   /// too.
   void publishParams(Time now) noexcept;
@@ -92,7 +96,8 @@ class Telemetry {
   std::int64_t errors_{0};
   std::array<std::uint8_t, 4096> buffer_{};
 
-  tautline::event_t event_{};    ///< Member, with its strings reserved.
+  tautline::event_t event_{};            ///< Member, with its strings reserved.
+  tautline::vehicle_state_t vehicle_{};  ///< Member, with its string made by setPlace().
   tautline::params_t params_{};  ///< Member, with its strings and its buffer made by setParams().
   std::vector<std::uint8_t> params_buffer_;
 };

@@ -5,6 +5,7 @@
 
 #include <linux/can/error.h>
 
+#include <ctime>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -107,7 +108,39 @@ TEST_F(CanSocketTest, StampsAreOnTheLoopsClock) {
   cycle(50ms);  // the loop's clock runs ahead: the frame is 50 ms old
   EXPECT_EQ(readAll(), 1);
   EXPECT_LE(last_.time, now_);
-  EXPECT_GT(last_.time, now_ - 1s);
+  EXPECT_GE(last_.time, now_ - 51ms);
+}
+
+TEST_F(CanSocketTest, AnAgeThatTheStepOfAClockMakesIsNotBelieved) {
+  readAll();  // empty: what comes now is younger than this cycle
+  pair_.send(frameWith(0x100, 1));
+  const timespec pause{0, 60'000'000};  // to the stamp's clock 60 ms, to the loop's only 10
+  nanosleep(&pause, nullptr);
+  cycle(10ms);
+  EXPECT_EQ(readAll(), 1);
+  EXPECT_EQ(last_.time, now_);
+}
+
+TEST_F(CanSocketTest, AFrameThatWaitedKeepsItsAge) {
+  readAll();
+  pair_.send(frameWith(0x100, 1));
+  const timespec pause{0, 60'000'000};
+  nanosleep(&pause, nullptr);
+  cycle(200ms);  // the loop stood still
+  EXPECT_EQ(readAll(), 1);
+  EXPECT_LE(last_.time, now_ - 60ms);
+}
+
+TEST(ArrivalOf, IsWithinWhatIsPossible) {
+  const Time now{5s};
+  const Time earliest = now - 30ms;
+  EXPECT_EQ(arrivalOf(10ms, now, earliest), now - 10ms);
+  EXPECT_EQ(arrivalOf(0ms, now, earliest), now);
+  EXPECT_EQ(arrivalOf(30ms, now, earliest), earliest);
+  EXPECT_EQ(arrivalOf(31ms, now, earliest), now) << "stepped forward";
+  EXPECT_EQ(arrivalOf(1h, now, earliest), now);
+  EXPECT_EQ(arrivalOf(-1ms, now, earliest), now) << "stepped back";
+  EXPECT_EQ(arrivalOf(-1h, now, earliest), now);
 }
 
 TEST_F(CanSocketTest, AFullBufferIsCountedAndCostsOnlyTheNewFrame) {
@@ -190,7 +223,18 @@ TEST(CanSocketOpen, NamesTheInterfaceAndTheRemedy) {
     EXPECT_EQ(result.status, CanStatus::kNoSuchInterface);
     EXPECT_THAT(result.reason, HasSubstr("ip link set tautline_no0 up type can bitrate 500000"));
   }
-  EXPECT_EQ(socket.fault(), LinkFault::kInterfaceMissing);
+  EXPECT_EQ(socket.fault(),
+            result.status == CanStatus::kNoCan ? LinkFault::kNoCan : LinkFault::kInterfaceMissing);
+}
+
+TEST(CanSocketOpen, EveryReasonHasItsFault) {
+  EXPECT_EQ(faultOf(CanStatus::kOpen), LinkFault::kNone);
+  EXPECT_EQ(faultOf(CanStatus::kNoCan), LinkFault::kNoCan);
+  EXPECT_EQ(faultOf(CanStatus::kNotCan), LinkFault::kNotCan);
+  EXPECT_EQ(faultOf(CanStatus::kPermission), LinkFault::kCanPermission);
+  EXPECT_EQ(faultOf(CanStatus::kSettings), LinkFault::kCanSettings);
+  EXPECT_EQ(faultOf(CanStatus::kRealDevice), LinkFault::kRealDevice);
+  EXPECT_EQ(faultOf(CanStatus::kFailed), LinkFault::kPortFailed);
 }
 
 TEST(CanSocketOpen, RefusesWhatIsNoDescriptor) {

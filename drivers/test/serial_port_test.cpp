@@ -1,6 +1,7 @@
 #include "drivers/serial_port.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <termios.h>
@@ -8,12 +9,14 @@
 
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/testing/unprivileged.h"
 #include "drivers/serial_settings.h"
 #include "drivers/test/pty.h"
 
@@ -24,6 +27,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::Pty;
 using testing::TemporaryFolder;
+using testing::Unprivileged;
 using namespace std::chrono_literals;
 
 std::span<const std::uint8_t> bytesOf(const std::string& text) {
@@ -123,16 +127,9 @@ TEST(SerialPort, SaysWhatIsWrongAndWhatToDo) {
 TEST(SerialPort, NamesTheGroupWhenPermissionIsMissing) {
   Pty pty;
   ASSERT_EQ(chmod(pty.path().c_str(), 0), 0);
-  const bool root = geteuid() == 0;
-  constexpr uid_t kNobody = 65534;
-  if (root) {
-    ASSERT_EQ(seteuid(kNobody), 0);
-  }
+  const Unprivileged nobody;
   SerialPort port(configFor(pty.path()));
   const SerialOpenResult result = port.open();
-  if (root) {
-    ASSERT_EQ(seteuid(0), 0);
-  }
   EXPECT_EQ(result.status, SerialStatus::kPermission);
   EXPECT_THAT(result.reason, HasSubstr("dialout"));
 }
@@ -201,6 +198,93 @@ TEST(SerialPort, RetriesSlowlyAfterALongTimeButNeverGivesUp) {
     port.poll(now);
   }
   EXPECT_EQ(port.counters().reconnects, 3U);
+}
+
+/// A port that has lost its device and tries again, and what it says about it.
+class SerialPortThatTries : public ::testing::Test {
+ protected:
+  SerialPortThatTries() : port_(configFor(pty_.path())) {
+    EXPECT_TRUE(port_.open());
+    EXPECT_EQ(port_.fault(), LinkFault::kNone);
+    pty_.unplug();
+    EXPECT_EQ(readAll(port_), "");
+    EXPECT_EQ(port_.fault(), LinkFault::kPortMissing);
+    std::filesystem::permissions(std::filesystem::path(pty_.path()).parent_path(),
+                                 std::filesystem::perms::all);  // for Unprivileged
+  }
+  /// As long as any back-off.
+  LinkFault faultAfterTrying() {
+    for (const Time end = now_ + 5s; now_ < end; now_ += 10ms) port_.poll(now_);
+    return port_.fault();
+  }
+  /// The device is there again, for everybody.
+  void plugIn() {
+    pty_.plug();
+    ASSERT_EQ(chmod(pty_.path().c_str(), 0666), 0);
+  }
+
+  Pty pty_;
+  SerialPort port_;
+  Time now_{};
+};
+
+TEST_F(SerialPortThatTries, NamesADeviceThatAnotherProgramHas) {
+  plugIn();
+  const int other = ::open(pty_.path().c_str(), O_RDWR | O_NOCTTY);
+  ASSERT_GE(other, 0);
+  ASSERT_EQ(ioctl(other, TIOCEXCL), 0);
+  const Unprivileged nobody;
+  EXPECT_EQ(faultAfterTrying(), LinkFault::kPortBusy);
+  ASSERT_EQ(ioctl(other, TIOCNXCL),
+            0);  // a real device forgets it when it is closed, a pty does not
+  ::close(other);
+  EXPECT_EQ(faultAfterTrying(), LinkFault::kNone);
+  EXPECT_TRUE(port_.connected());
+  EXPECT_EQ(port_.counters().reconnects, 1U);
+}
+
+TEST_F(SerialPortThatTries, NamesADeviceThatAnotherStationHas) {
+  plugIn();
+  {
+    SerialPort other(configFor(pty_.path()));
+    ASSERT_TRUE(other.open());
+    EXPECT_EQ(faultAfterTrying(), LinkFault::kPortBusy);
+  }
+  EXPECT_EQ(faultAfterTrying(), LinkFault::kNone);
+}
+
+TEST_F(SerialPortThatTries, NamesADeviceThatItMayNotUse) {
+  pty_.plug();
+  ASSERT_EQ(chmod(pty_.path().c_str(), 0), 0);
+  {
+    const Unprivileged nobody;
+    EXPECT_EQ(faultAfterTrying(), LinkFault::kPortPermission);
+  }
+  ASSERT_EQ(chmod(pty_.path().c_str(), 0666), 0);
+  EXPECT_EQ(faultAfterTrying(), LinkFault::kNone);
+}
+
+TEST_F(SerialPortThatTries, NamesADeviceThatIsNotThere) {
+  EXPECT_EQ(faultAfterTrying(), LinkFault::kPortMissing);
+}
+
+TEST_F(SerialPortThatTries, NamesAPathThatIsNoSerialDevice) {
+  std::filesystem::remove(pty_.path());
+  std::filesystem::create_symlink("/dev/null", pty_.path());
+  EXPECT_EQ(faultAfterTrying(), LinkFault::kNotSerial);
+}
+
+TEST(SerialPort, NamesARealDeviceThatComesLater) {
+  TemporaryFolder folder;
+  SerialConfig config = configFor((folder.path() / "ttyACM0").string());
+  config.pseudo_terminal_only = true;
+  SerialPort port(config);
+  ASSERT_FALSE(port.open());
+  EXPECT_EQ(port.fault(), LinkFault::kPortMissing);
+  std::filesystem::create_symlink("/dev/null", config.device);  // a device, and no pseudo terminal
+  for (Time now{}; now < Time{} + 1s; now += 10ms) port.poll(now);
+  EXPECT_EQ(port.fault(), LinkFault::kRealDevice);
+  EXPECT_FALSE(port.connected());
 }
 
 TEST(SerialPort, KeepsTryingWhenTheDeviceWasMissingAtTheStart) {

@@ -1,175 +1,23 @@
-#include "drivers/tautline_device.h"
+// What the device makes of messages and commands.
 
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <numbers>
-#include <string>
-#include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/can_socket.h"
-#include "drivers/cobs_port.h"
-#include "drivers/serial_port.h"
-#include "drivers/test/can_pair.h"
-#include "drivers/test/pty.h"
+#include "drivers/test/tautline_rig.h"
 
 namespace tautline {
 namespace {
 
 using bus::BusMode;
-using testing::CanPair;
-using testing::Pty;
+using testing::CanLink;
+using testing::flying;
+using testing::of;
+using testing::Rig;
 using namespace std::chrono_literals;
 
-constexpr double kPi = std::numbers::pi;
-
-/// What a device on the bus sends, with its alive counters.
-class Sensors {
- public:
-  template <class Message>
-  BusFrame next(const Message& message, unsigned stream) {
-    return bus::encode(message, static_cast<std::uint8_t>(alive_[stream]++ % 16));
-  }
-  void skip(unsigned stream, unsigned frames = 1) { alive_[stream] += frames; }
-
- private:
-  std::array<unsigned, 4> alive_{};
-};
-
-/// One of the two links, with the far end in the test's hands.
-class Link {
- public:
-  virtual ~Link() = default;
-  virtual FramePort& port() = 0;
-  virtual void send(const BusFrame& frame) = 0;
-  virtual std::vector<BusFrame> receive() = 0;
-};
-
-class CanLink final : public Link {
- public:
-  CanLink() : socket_(CanConfig{.interface = ""}, kTautlineIds) {
-    EXPECT_TRUE(socket_.adopt(pair.release()));
-  }
-  FramePort& port() override { return socket_; }
-  void send(const BusFrame& frame) override { ASSERT_TRUE(pair.send(frame)); }
-  std::vector<BusFrame> receive() override {
-    std::vector<BusFrame> out;
-    for (const can_frame& got : pair.receive()) {
-      BusFrame frame;
-      frame.id = static_cast<std::uint16_t>(got.can_id);
-      frame.size = got.can_dlc;
-      std::copy_n(std::begin(got.data), got.can_dlc, frame.data.begin());
-      out.push_back(frame);
-    }
-    return out;
-  }
-
-  CanPair pair;
-
- private:
-  CanSocket socket_;
-};
-
-class SerialLink final : public Link {
- public:
-  SerialLink() : serial_(config()), cobs_(serial_) { EXPECT_TRUE(serial_.open()); }
-  FramePort& port() override { return cobs_; }
-  void send(const BusFrame& frame) override {
-    const bus::SerialFrame sent = bus::encodeSerial(frame);
-    pty.send({reinterpret_cast<const char*>(sent.buffer.data()), sent.size});
-  }
-  std::vector<BusFrame> receive() override {
-    std::vector<BusFrame> out;
-    const std::string bytes = pty.receive();
-    assembler_.push({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
-                    [&out](const bus::DecodedSerial& d) {
-                      EXPECT_EQ(d.error, bus::FramingError::kNone);
-                      out.push_back(d.frame);
-                    });
-    return out;
-  }
-
-  Pty pty;
-
- private:
-  SerialConfig config() {
-    SerialConfig config;
-    config.device = pty.path();
-    config.baud = bus::kDefaultBaud;
-    return config;
-  }
-  SerialPort serial_;
-  CobsPort cobs_;
-  bus::FrameAssembler assembler_;
-};
-
-/// A loop at 100 Hz on virtual time.
-class Rig {
- public:
-  explicit Rig(Link& link, const TautlineConfig& config = {})
-      : link_(link), device_(link.port(), config, "tautline-test") {}
-
-  void sendSensorsNow(double length = 2.0) {
-    link_.send(
-        sensors.next(bus::Reel{static_cast<std::int32_t>(std::lround(length * 1e4)), 0.1, 1.5}, 0));
-    link_.send(sensors.next(bus::Angles{0.5, -0.25, status}, 1));
-    link_.send(sensors.next(bus::Attitude{1.0, 0.0, 0.0, 0.0}, 2));
-    link_.send(sensors.next(
-        bus::VehicleStatus{bus::FlightMode::kFlying, bus::kLowBattery, 15.0, -0.3, 0, 0, 0}, 3));
-  }
-  std::vector<BusFrame> run(Duration duration, const VehicleCommand& command = {}) {
-    std::vector<BusFrame> sent;
-    for (const Time end = now + duration; now < end; now += 10ms) {
-      if (!silent) sendSensorsNow();
-      device_.read(now, frame);
-      device_.write(now, command);
-      for (const BusFrame& f : link_.receive()) sent.push_back(f);
-    }
-    return sent;
-  }
-  TautlineDevice& device() { return device_; }
-
-  Sensors sensors;
-  SensorFrame frame;
-  Time now{5s};
-  bool silent{false};
-  bus::SensorStatus status{bus::SensorStatus::kGood};
-
- private:
-  Link& link_;
-  TautlineDevice device_;
-};
-
-template <class T>
-std::vector<T> of(const std::vector<BusFrame>& frames) {
-  std::vector<T> out;
-  for (const BusFrame& frame : frames) {
-    const bus::Parsed parsed = bus::parse(frame);
-    if (const T* value = std::get_if<T>(&parsed.value)) out.push_back(*value);
-  }
-  return out;
-}
-
-VehicleCommand flying() {
-  VehicleCommand command;
-  command.engaged = true;
-  command.reel_controller = true;
-  return command;
-}
-
-/// Everything that does not depend on the link, over both.
-class TautlineDeviceTest : public ::testing::TestWithParam<const char*> {
- protected:
-  static std::unique_ptr<Link> makeLink() {
-    if (std::string(GetParam()) == "can") return std::make_unique<CanLink>();
-    return std::make_unique<SerialLink>();
-  }
-  std::unique_ptr<Link> link_{makeLink()};
-  Rig rig_{*link_};
-};
+class TautlineDeviceTest : public testing::OverBothLinks {};
 
 TEST_P(TautlineDeviceTest, FillsTheFrame) {
   rig_.run(50ms);
@@ -319,69 +167,6 @@ TEST_P(TautlineDeviceTest, AnImpossibleValueOrAFaultySensorInvalidates) {
   EXPECT_TRUE(rig_.frame.angles.valid);
 }
 
-TEST_P(TautlineDeviceTest, NamesASilentLinkAndItsReturn) {
-  rig_.run(1500ms);
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kNone);
-  rig_.silent = true;
-  rig_.run(2100ms);
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kSilent);
-  rig_.silent = false;
-  rig_.run(20ms);
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kNone);
-}
-
-TEST_P(TautlineDeviceTest, NamesASensorAtAnotherRate) {
-  rig_.run(1500ms);
-  for (const int more : {2, 0}) {  // the reel three times as often as agreed, then right again
-    for (int i = 0; i < 350; ++i) {
-      for (int k = 0; k < more; ++k) link_->send(rig_.sensors.next(bus::Reel{20000, 0, 0}, 0));
-      rig_.run(10ms);
-    }
-    EXPECT_EQ(rig_.frame.link.fault, more > 0 ? LinkFault::kSensorRate : LinkFault::kNone);
-  }
-  EXPECT_TRUE(rig_.frame.reel.valid);
-}
-
-TEST_P(TautlineDeviceTest, NamesASensorThatIsTooSlow) {
-  rig_.silent = true;
-  for (int i = 0; i < 350; ++i) {
-    if (i % 3 == 0) rig_.sendSensorsNow();
-    rig_.run(10ms);
-  }
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kSensorRate);
-}
-
-TEST_P(TautlineDeviceTest, NamesTwoSendersOfOneMessage) {
-  Sensors second;
-  second.skip(0, 7);
-  for (int i = 0; i < 350; ++i) {
-    link_->send(second.next(bus::Reel{1, 0, 0}, 0));
-    rig_.run(10ms);
-  }
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kUnreliable);
-}
-
-TEST_P(TautlineDeviceTest, NamesAnotherStation) {
-  link_->send(bus::encode(bus::Rates{}, 3));
-  rig_.run(20ms);
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kAnotherStation);
-  rig_.run(2100ms);
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kNone);
-}
-
-TEST_P(TautlineDeviceTest, NamesFramesOfAnotherProtocol) {
-  rig_.silent = true;
-  for (int i = 0; i < 250; ++i) {
-    BusFrame frame;
-    frame.id = static_cast<std::uint16_t>(0x300 + i % 5);
-    frame.size = 8;
-    link_->send(frame);
-    rig_.run(10ms);
-  }
-  EXPECT_EQ(rig_.frame.link.fault, LinkFault::kOtherProtocol);
-  EXPECT_FALSE(rig_.frame.reel.valid);
-}
-
 TEST_P(TautlineDeviceTest, AppliesItsCalibration) {
   TautlineConfig config;
   config.length_scale = 1.1;
@@ -397,7 +182,7 @@ TEST_P(TautlineDeviceTest, AppliesItsCalibration) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Links, TautlineDeviceTest, ::testing::Values("can", "serial"),
-                         [](const auto& link) { return std::string(link.param); });
+                         testing::linkName);
 
 TEST(TautlineDeviceOnCan, AStopThatTheBusDoesNotTakeIsSentWhenItDoes) {
   CanLink link;
@@ -413,57 +198,6 @@ TEST(TautlineDeviceOnCan, AStopThatTheBusDoesNotTakeIsSentWhenItDoes) {
   const auto modes = of<bus::ModeCommand>(link.receive());
   ASSERT_EQ(modes.size(), 1U);
   EXPECT_EQ(modes[0].mode, BusMode::kStop);
-}
-
-TEST(TautlineDeviceOnSerial, NamesGarbageAndText) {
-  SerialLink link;
-  Rig rig(link);
-  rig.silent = true;
-  unsigned noise = 1;
-  for (int i = 0; i < 250; ++i) {
-    std::string bytes;
-    for (int k = 0; k < 20; ++k) {
-      noise = noise * 1664525U + 1013904223U;
-      bytes.push_back(static_cast<char>(noise >> 24U));
-    }
-    link.pty.send(bytes);
-    rig.run(10ms);
-  }
-  EXPECT_EQ(rig.frame.link.fault, LinkFault::kGarbage);
-  EXPECT_GT(rig.frame.link.lines_bad, 0U);
-  for (int i = 0; i < 250; ++i) {
-    link.pty.send("!Pos 0.78,-0.52,1.20\r\n");
-    rig.run(10ms);
-  }
-  EXPECT_EQ(rig.frame.link.fault, LinkFault::kOtherProtocol);
-  rig.silent = false;
-  rig.run(20ms);
-  EXPECT_EQ(rig.frame.link.fault, LinkFault::kNone);
-}
-
-TEST(TautlineDeviceOnSerial, StartsAnewAfterReplugging) {
-  SerialLink link;
-  Rig rig(link);
-  rig.run(100ms, flying());
-  const bus::SerialFrame cut = bus::encodeSerial(rig.sensors.next(bus::Reel{1, 0, 0}, 0));
-  link.pty.send({reinterpret_cast<const char*>(cut.buffer.data()), 5});
-  rig.silent = true;
-  rig.run(20ms, flying());
-  link.pty.unplug();
-  for (int i = 0; i < 50; ++i, rig.now += 10ms) rig.device().read(rig.now, rig.frame);
-  EXPECT_FALSE(rig.frame.link.connected);
-  EXPECT_EQ(rig.frame.link.fault, LinkFault::kNone);
-  link.pty.plug();
-  rig.run(2s, flying());
-  EXPECT_TRUE(rig.frame.link.connected);
-  EXPECT_EQ(rig.frame.link.reconnects, 1U);
-  rig.silent = false;
-  rig.sensors.skip(0, 5);  // the device has counted on
-  const std::uint32_t bad = rig.frame.link.lines_bad;
-  const auto modes = of<bus::ModeCommand>(rig.run(100ms, flying()));
-  EXPECT_EQ(rig.frame.link.lines_bad, bad);
-  ASSERT_FALSE(modes.empty());
-  EXPECT_EQ(modes.front().mode, BusMode::kArmed);
 }
 
 }  // namespace

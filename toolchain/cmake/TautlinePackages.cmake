@@ -40,7 +40,7 @@ tautline_package(station
   PROGRAMS tautline-station
   DEPENDS "adduser, iproute2, liblcm-bin"
   CROSS_DEPENDS "${base_lcm}, libfmt9 (>= 9.1.0)"
-  RECOMMENDS tautline-tools
+  RECOMMENDS "tautline-tools, psmisc"
   SUMMARY "Ground station of a tethered drone: the real-time loop
 The loop that flies: driver, estimate, supervisor, mission, control,
 telemetry over LCM; with systemd services, udev rules and a logger.

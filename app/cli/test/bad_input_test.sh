@@ -49,6 +49,18 @@ expect 5 'nowhere' "$bench" fly --mission nowhere --scene "$open"
 expect 5 'nowhere.lcm' "$tautline" report nowhere.lcm
 expect 5 'nowhere' "$tautline" blackbox nowhere
 
+# A log of another version: it names the channel and the way out.
+python3 -c "
+import struct, sys
+for channel in (b'STATION_INPUT', b'VEHICLE_STATE'):
+    message = bytes(range(200))
+    sys.stdout.buffer.write(struct.pack('>IqqII', 0xEDA1DA01, 0, 0, len(channel), len(message)) + channel + message)
+" >"$work/old.lcm"
+expect 5 'old.lcm: STATION_INPUT, VEHICLE_STATE: recorded by another version.*with the programs of the version' "$tautline" report "$work/old.lcm"
+expect 5 'old.lcm: STATION_INPUT: recorded by another version.*with the programs of the version' "$bench" replay "$work/old.lcm"
+sed 's|^run_mode.*|run_mode = "SIM"|' "$config/station_replay.toml" >"$work/replay.toml"
+expect 5 'old.lcm: STATION_INPUT: recorded by another version' "$station" --config "$work/replay.toml" --device "$work/old.lcm"
+
 # Missions: each names its file, line and row.
 expect 5 'bad.mission.toml:[0-9]+' "$tautline" mission check "$(changed square 's/^version = 1/version = /')"
 expect 5 'bad.mission.toml: version: missing' "$tautline" mission check "$(changed square 's/^version/vresion/')"

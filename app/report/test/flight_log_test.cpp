@@ -3,6 +3,8 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -138,6 +140,45 @@ TEST(FlightLogFile, ForgedMessagesAreCountedNotFatal) {
   const FlightLog log = readFlightLog(file);
   EXPECT_EQ(log.channels.at("EVENT").undecodable, 5);
   EXPECT_EQ(log.channels.at("EVENT").messages, 3);
+}
+
+/// Copies a log; the messages of `channel` get a fingerprint that no type of ours has.
+void writeOfAnotherVersion(const std::filesystem::path& from, const std::filesystem::path& to,
+                           const std::string& channel, bool only_the_first) {
+  lcm::LogFile in(from.string(), "r");
+  lcm::LogFile out(to.string(), "w");
+  bool done = false;
+  while (const lcm::LogEvent* event = in.readNextEvent()) {
+    lcm::LogEvent copy = *event;
+    std::vector<unsigned char> bytes(static_cast<unsigned char*>(event->data),
+                                     static_cast<unsigned char*>(event->data) + event->datalen);
+    if (event->channel == channel && !done) {
+      bytes[3] ^= 0x10U;
+      done = only_the_first;
+    }
+    copy.data = bytes.data();
+    out.writeEvent(&copy);
+  }
+}
+
+TEST(FlightLogFile, ALogOfAnotherVersionIsRefusedByName) {
+  const auto whole = logFile("this_version.lcm");
+  const auto other = logFile("other_version.lcm");
+  writeSyntheticLog({}, whole);
+  writeOfAnotherVersion(whole, other, "VEHICLE_STATE", false);
+  try {
+    static_cast<void>(readFlightLog(other));
+    FAIL() << "read without a word";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.code(), ExitCode::kConfig);
+    EXPECT_EQ(e.problem().key, "VEHICLE_STATE");
+    EXPECT_THAT(e.what(),
+                HasSubstr("other_version.lcm: VEHICLE_STATE: recorded by another version"));
+    EXPECT_THAT(e.what(), HasSubstr("with the programs of the version that recorded it"));
+  }
+  // One alone is damage, or a stranger on the channel.
+  writeOfAnotherVersion(whole, other, "VEHICLE_STATE", true);
+  EXPECT_EQ(readFlightLog(other).channels.at("VEHICLE_STATE").undecodable, 1);
 }
 
 TEST(FlightLogFile, WhatIsNoFlightLogIsSaidPlainly) {

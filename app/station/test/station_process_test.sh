@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The real programs over a real pseudo terminal and real LCM: a missing device, an unplugged one, a killed station.
+# The real programs over a real pseudo terminal and real LCM: a missing device, a busy one, an unplugged one, a
+# killed station.
 set -uo pipefail
 bin=${TAUTLINE_BIN:?the folder of the programs}
 config=${TAUTLINE_SOURCE_DIR:?the source folder}/config
@@ -58,6 +59,21 @@ check "station runs without a device" soon 5 '"mode":"STANDBY"'
 check "it names the missing device" grep -q "device" "$work/station.txt"
 check "arming is refused with exit code 3" exit_code 3 tautline arm
 check "and names the link" grep -q LINK_VEHICLE "$work/last.txt"
+
+check "status names the path that is not there" bash -c "'$bin/tautline' status --lcm-url '$lcm' | grep -q 'link .*the device $work/device is not there'"
+# Another program has it: named while the station runs, with the command that finds the program.
+python3 -c "
+import fcntl, os, pty, sys, time
+_, slave = pty.openpty()
+fcntl.flock(slave, fcntl.LOCK_EX)
+os.symlink(os.ttyname(slave), sys.argv[1])
+time.sleep(60)" "$work/device" &
+holder=$!
+check "a busy device is recognised" soon 8 '"link_fault":"port busy"'
+check "and the remedy names it" bash -c "'$bin/tautline' status --lcm-url '$lcm' | grep -q 'fuser -v $work/device'"
+kill -KILL "$holder"
+wait "$holder" 2>/dev/null
+rm "$work/device"
 
 # The device comes, is flown, goes, comes back.
 start_sim
