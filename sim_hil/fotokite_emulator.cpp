@@ -83,7 +83,7 @@ void FotokiteEmulator::obey(std::string_view line) noexcept {
   }
   if (obeySetup(words.name, words.rest, fields)) return;
   if (ground_mode_ == GroundMode::kRemoteControlled && obeyMotion(words.name, fields)) {
-    last_command_ = plant_.now();
+    last_command_ = plant_.clock();
     return;
   }
   ++refused_lines_;
@@ -96,7 +96,7 @@ bool FotokiteEmulator::obeySetup(std::string_view name, std::string_view rest,
   } else if (name == "RemoteControl") {
     if (rest != "start") return false;
     ground_mode_ = GroundMode::kRemoteControlled;
-    last_command_ = plant_.now();
+    last_command_ = plant_.clock();
   } else if (name == fotokite::kSetParameterCommand) {
     if (f.count != 2 || pending_count_ == pending_.size()) return false;
     pending_[pending_count_++] = {static_cast<int>(limited(f.value[0], 1e6)), f.value[1]};
@@ -217,7 +217,7 @@ void FotokiteEmulator::commit() noexcept {
 void FotokiteEmulator::advance() noexcept {
   const bool on = plant_.vehicle().motorsOn();
   if (was_on_ && !on) {
-    motors_stopped_ = plant_.now();
+    motors_stopped_ = plant_.clock();
     has_flown_ = true;
   }
   was_on_ = on;
@@ -233,7 +233,7 @@ bool FotokiteEmulator::flying() const noexcept {
 }
 
 void FotokiteEmulator::stepTimeouts() noexcept {
-  const Time now = plant_.now();
+  const Time now = plant_.clock();
   if (plant_.truth().tension >= kSlackTension || !flying()) slack_since_ = now;
   if (low_launch_ && plant_.truth().tangent_elevation >= config_.low_launch_angle) {
     low_launch_ = false;
@@ -241,7 +241,7 @@ void FotokiteEmulator::stepTimeouts() noexcept {
   if (!flying()) return;
   const Duration silence = now - last_command_;
   if (silence > fromSeconds(config_.command_timeout)) holdEverything();
-  const bool empty = plant_.vehicle().batteryVoltage() < plant_.vehicle().config().battery_empty;
+  const bool empty = plant_.batteryVoltage() < plant_.vehicle().config().battery_empty;
   if (silence > fromSeconds(config_.landing_timeout) || empty) plant_.vehicle().emergencyLand();
 }
 
@@ -267,6 +267,9 @@ double FotokiteEmulator::telemetryRate() const noexcept {
 }
 
 FlightMode FotokiteEmulator::flightMode() const noexcept {
+  const FaultSchedule& faults = plant_.faults();
+  if (const Fault* said = faults.active(FaultTarget::kFlightMode, FaultMode::kOn))
+    return static_cast<FlightMode>(vehicleFlightModes()[said->code].fotokite);
   if (plant_.truth().crashed) return FlightMode::kHardKill;
   switch (plant_.vehicle().phase()) {
     case FlightPhase::kTakeoff:
@@ -281,36 +284,39 @@ FlightMode FotokiteEmulator::flightMode() const noexcept {
   }
   if (batteryTooLow()) return FlightMode::kBatteryTooLow;
   if (stopped_in_air_) return FlightMode::kMotorStopDisable;
-  const bool just_stopped = has_flown_ && plant_.now() - motors_stopped_ < kStopShown;
+  const bool just_stopped = has_flown_ && plant_.clock() - motors_stopped_ < kStopShown;
   return just_stopped ? FlightMode::kMotorStopRestart : FlightMode::kIdle;
 }
 
 bool FotokiteEmulator::batteryTooLow() const noexcept {
   const Vehicle& vehicle = plant_.vehicle();
-  return vehicle.batteryVoltage() < vehicle.config().battery_critical;
+  return plant_.batteryVoltage() < vehicle.config().battery_critical;
 }
 
 std::uint16_t FotokiteEmulator::flags() const noexcept {
   using namespace fotokite;
   const Vehicle& vehicle = plant_.vehicle();
-  const Time now = plant_.now();
+  const Time now = plant_.clock();
   std::uint32_t bits = 0;
   const auto set = [&](bool condition, FlightFlag flag) {
     if (condition) bits |= flag;
   };
   set(batteryTooLow(), kCriticalBattery);
-  set(vehicle.batteryVoltage() < vehicle.config().battery_low, kLowBattery);
+  set(plant_.batteryVoltage() < vehicle.config().battery_low, kLowBattery);
   set(vehicle.backupVoltage() < kBackupLow, kLowBackupBattery);
   set(flying() && now - last_command_ > fromSeconds(config_.command_timeout), kNoSyncCommands);
   set(vehicle.motorsOn() && low_launch_, kLowLaunchAngle);
   set(vehicle.phase() == FlightPhase::kEmergencyLand, kEmergencyLandFlag);
   set(now - slack_since_ > kSlackTime, kNoTetherDetected);
   set(plant_.truth().crashed, kHardKillFlag);
+  plant_.faults().forEachActive(FaultTarget::kFlag, FaultMode::kOn, [&](const Fault& said) {
+    bits |= static_cast<std::uint32_t>(vehicleFlags()[said.code].fotokite);
+  });
   return static_cast<std::uint16_t>(bits);
 }
 
 void FotokiteEmulator::stepTelemetry() noexcept {
-  const Time now = plant_.now();
+  const Time now = plant_.clock();
   const auto due = [now](Time& next, double rate) {
     if (now < next) return false;
     const Duration period = fromSeconds(1.0 / rate);
@@ -322,20 +328,20 @@ void FotokiteEmulator::stepTelemetry() noexcept {
   if (next_telemetry_ > now + fromSeconds(1.0 / rate)) next_telemetry_ = now;
   if (due(next_telemetry_, rate)) {
     const SensorReadings sensed = plant_.readSensors();
-    if (subscribed_.ground) {
+    if (subscribed_.ground && !sensed.encoder_silent) {
       TelemetryLine line(fotokite::kGroundStatusHeader);
       line.field(static_cast<std::int64_t>(ground_mode_))
           .field(toSeconds(now.time_since_epoch()), 2)
-          .field(plant_.vehicle().batteryVoltage(), 2)
+          .field(plant_.batteryVoltage(), 2)
           .field(sensed.counts);
       output_.put(line.finish());
     }
-    if (subscribed_.attitude) {
+    if (subscribed_.attitude && !sensed.attitude_silent) {
       TelemetryLine line(fotokite::kAttitudeHeader);
       append(line, toDevice(sensed.attitude));
       output_.put(line.finish());
     }
-    if (subscribed_.position) {
+    if (subscribed_.position && !sensed.angles_silent) {
       const double resolution = config_.angle_resolution;
       const int decimals = std::max(2, static_cast<int>(std::ceil(-std::log10(resolution) - 1e-9)));
       const auto rounded = [resolution](double x) {
@@ -358,7 +364,7 @@ void FotokiteEmulator::sendStatusLines() noexcept {
   if (subscribed_.flight) {
     TelemetryLine line(fotokite::kFlightStatusHeader);
     line.field(static_cast<std::int64_t>(flightMode()))
-        .field(toSeconds(plant_.now().time_since_epoch()), 2)
+        .field(toSeconds(plant_.clock().time_since_epoch()), 2)
         .field(vehicle.backupVoltage(), 2)
         .field(std::int64_t{flags()});
     output_.put(line.finish());

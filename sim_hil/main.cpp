@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -17,6 +18,8 @@
 #include "common/toml/config_file.h"
 #include "lcmtypes/channels.h"
 #include "sim_hil/can_link.h"
+#include "sim_hil/fault_file.h"
+#include "sim_hil/fault_schedule.h"
 #include "sim_hil/pty_link.h"
 #include "sim_hil/real_time_server.h"
 #include "sim_hil/sim_config.h"
@@ -42,6 +45,8 @@ struct Options {
   double rate_hz{0.0};
   double duration_s{0.0};
   std::string lcm_url{kDefaultLcmUrl};
+  std::vector<std::string> faults;
+  std::string scenario;
   bool no_lcm{false};
   bool check_config{false};
   bool print_config{false};
@@ -67,6 +72,12 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--duration", o.duration_s, "stop after this many seconds; 0: run until stopped")
       ->check(CLI::Range(0.0, 1e6));
   app.add_option("--lcm-url", o.lcm_url, "where SIM_TRUTH and PARAMS go")->capture_default_str();
+  app.add_option("--fault", o.faults,
+                 "\"TARGET MODE AT_S [FOR_S [VALUE]]\", e.g. \"encoder stuck 10 5\"; may be given "
+                 "again; see `tautline-sim faults`")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--scenario", o.scenario, "take the faults of this scenario file");
   app.add_flag("--no-lcm", o.no_lcm, "send nothing over LCM");
   app.add_flag("--check-config", o.check_config, "read scene and config, then stop");
   app.add_flag("--print-config", o.print_config,
@@ -116,6 +127,62 @@ std::unique_ptr<ByteLink> openLink(const Options& o, SimDevice device) {
   return std::make_unique<PtyLink>(link);
 }
 
+/// What can be made to go wrong, as a table.
+void showFaults() {
+  std::printf("%-14s %-13s %-8s  %s\n", "target", "mode", "value", "effect (where it can be had)");
+  for (const FaultKind& kind : faultMenu()) {
+    char value[24] = "-";
+    if (kind.value[0] != '\0') std::snprintf(value, sizeof value, "%g", kind.initial);
+    std::printf("%-14s %-13s %-8s  %s%s%s (%s)\n", nameOf(kind.target, kFaultTargetNames),
+                nameOf(kind.mode, kFaultModeNames), value, kind.effect,
+                kind.value[0] != '\0' ? "; value: " : "", kind.value,
+                nameOf(kind.place, kFaultPlaceNames));
+  }
+  const auto list = [](const char* title, std::span<const VehicleCode> codes) {
+    std::printf("%s", title);
+    for (const VehicleCode& c : codes)
+      std::printf(" %s%s", c.name, c.tautline < 0 ? "" : "*");
+    std::printf("\n");
+  };
+  list("flag:NAME   ", vehicleFlags());
+  list("mode:NAME   ", vehicleFlightModes());
+  std::printf("*: on the Tautline bus too. Mode ok: nothing is wrong with the target meanwhile.\n");
+}
+
+/// Faults of the command line and of the scenario file, in this order.
+std::vector<Fault> chooseFaults(const Options& o, SimDevice device) {
+  std::vector<Fault> faults;
+  for (const std::string& text : o.faults) {
+    faults.push_back(parseFault(text));
+    checkFault(faults.back(), device, false);
+  }
+  if (o.scenario.empty()) return faults;
+  TomlTable root = TomlFile::load(o.scenario).root();
+  for (const FaultEntry& entry : readFaults(root)) {
+    if (!entry.phase.empty()) {
+      throw InputError({.file = o.scenario,
+                        .key = describe(entry.fault),
+                        .problem = "begins with the station's phase \"" + entry.phase +
+                                   "\", which the machine does not know",
+                        .remedy = "leave phase out and count at_s from the simulator's start, or "
+                                  "fly it in lock-step: tautline-bench scenario"});
+    }
+    checkFault(entry.fault, device, false);
+    faults.push_back(entry.fault);
+  }
+  return faults;
+}
+
+void inject(Simulator& simulator, const std::vector<Fault>& faults) {
+  for (const Fault& fault : faults) {
+    if (!simulator.inject(fault)) {
+      throw InputError({.key = "--fault, --scenario",
+                        .problem = std::to_string(faults.size()) + " faults",
+                        .allowed = "at most " + std::to_string(kMaxFaults)});
+    }
+  }
+}
+
 int run(const Options& o) {
   SimConfig config = o.config.empty() ? SimConfig{} : loadConfig<SimConfig>(o.config);
   chooseDevice(o, config);
@@ -127,6 +194,7 @@ int run(const Options& o) {
     return static_cast<int>(ExitCode::kOk);
   }
   Simulator simulator(config, scene, o.seed);
+  inject(simulator, chooseFaults(o, config.device));
   if (o.check_config) {
     std::puts("configuration is right");
     return static_cast<int>(ExitCode::kOk);
@@ -166,11 +234,17 @@ int main(int argc, char** argv) {
       "tautline-sim"};
   sim::Options options;
   sim::addOptions(app, options);
+  const CLI::App* faults =
+      app.add_subcommand("faults", "List what can be made to go wrong, then stop");
   std::signal(SIGTERM, sim::onSignal);
   std::signal(SIGINT, sim::onSignal);
   std::signal(SIGHUP, sim::onSignal);
   try {
     app.parse(argc, argv);
+    if (faults->parsed()) {
+      sim::showFaults();
+      return static_cast<int>(ExitCode::kOk);
+    }
     return sim::run(options);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : static_cast<int>(ExitCode::kUsage);

@@ -13,6 +13,7 @@ constexpr double kGravity = 9.81;
 constexpr int kStepsPerAirUpdate = 10;
 constexpr double kDefaultFoot = 0.1;   // [m]
 constexpr double kSameContact = 0.05;  // contacts nearer than this on one obstacle are one [m]
+constexpr double kReleased = 1.0;     // a tether that was held follows its reel again [m/s]
 constexpr double kOnGround = 0.02;     // attachment this near its parking height stands [m]
 
 /// Height of the attachment over the ground when parked, from the scene's start.
@@ -59,7 +60,8 @@ Plant::Plant(const SimConfig& config, Obstacles obstacles, const Eigen::Vector3d
       vehicle_(config.vehicle),
       wind_(config.wind),
       sensors_(config.sensors, SensorInput{reel_.counts(), polarOf(p_start_),
-                                           Eigen::Quaterniond::Identity(), 0.0}) {
+                                           Eigen::Quaterniond::Identity(), 0.0}),
+      faults_(seed) {
   updateTruth();
 }
 
@@ -69,7 +71,9 @@ void Plant::step() noexcept {
     air_countdown_ = kStepsPerAirUpdate - 1;
   }
   const Eigen::Vector3d v_before = truth_.v_WD;
-  reel_.step(h_, truth_.reel_tension);
+  faults_.update(truth_.time);
+  stepFaults();
+  stepReel();
 
   VehicleSense sense;
   sense.bias = {config_.sensors.elevation_bias, config_.sensors.azimuth_bias};
@@ -87,12 +91,64 @@ void Plant::step() noexcept {
   end.force = vehicle_.thrust() - Eigen::Vector3d(0.0, kGravity * end.mass, 0.0);
   end.drag = config_.vehicle.drag;
   end.ground = ground_ + foot_;
-  tether_.step(h_, reel_.length(), end, wind_.velocity(), obstacles_);
+  tether_.step(h_, reel_.length() - behind_, end, air(), obstacles_);
 
   truth_.time += step_;
+  stepClock();
   updateTruth();
   checkCrash(v_before);
   sensors_.step(truth_.time, sensorInput(), random_);
+}
+
+/// What faults make of reel, vehicle and tether in this step.
+void Plant::stepFaults() noexcept {
+  using M = FaultMode;
+  using T = FaultTarget;
+  const auto node = [this](const Fault& f) {
+    return static_cast<int>(std::lround(f.value * tether_.linkCount()));
+  };
+  ReelDisturbance reel = reel_faults_.step(reel_.wanted(), faults_);
+  TetherDisturbance tether;
+  VehicleDisturbance vehicle;
+  const Fault* snag = faults_.active(T::kTether, M::kSnag);
+  if (snag != nullptr) {
+    tether.held_node = node(*snag);
+    reel.min_length = tether_.length();
+  }
+  tether.cut_link = tether_.cutLink();
+  if (const Fault* cut = faults_.active(T::kTether, M::kBreak); cut != nullptr && !cut_) {
+    cut_ = true;
+    tether.cut_link = std::clamp(node(*cut), 1, tether_.linkCount()) - 1;
+  }
+  if (const Fault* f = faults_.active(T::kTether, M::kContactSlip)) tether.friction = f->value;
+  tether.no_contacts = faults_.active(T::kTether, M::kContactOff) != nullptr;
+  if (const Fault* f = faults_.active(T::kTether, M::kOverTension)) vehicle.tension = f->value;
+  if (const Fault* f = faults_.active(T::kMotors, M::kMotorWeak)) vehicle.thrust_limit = f->value;
+  if (faults_.active(T::kMotors, M::kOff) != nullptr) vehicle_.stopMotors();
+  held_ = snag != nullptr || cut_;
+  reel_.disturb(reel);
+  tether_.disturb(tether);
+  vehicle_.disturb(vehicle);
+}
+
+/// The drum turns; a tether that is held or cut stays as long as it is.
+void Plant::stepReel() noexcept {
+  const double before = reel_.length();
+  reel_.step(h_, truth_.reel_tension);
+  behind_ = held_ ? behind_ + reel_.length() - before
+                  : behind_ - std::clamp(behind_, -kReleased * h_, kReleased * h_);
+}
+
+void Plant::stepClock() noexcept {
+  using M = FaultMode;
+  const auto active = [this](M mode) { return faults_.active(FaultTarget::kClock, mode); };
+  const Fault* slow = active(M::kSlow);
+  const bool open = clock_contact_.open(active(M::kIntermittent), faults_);
+  const bool stands = open || active(M::kStuck) != nullptr;
+  if (!stands) clock_ += slow != nullptr ? fromSeconds(slow->value * h_) : step_;
+  const Fault* jump = active(M::kWrong);
+  if (jump != nullptr && !clock_jumped_) clock_ += fromSeconds(jump->value);
+  clock_jumped_ = jump != nullptr;
 }
 
 void Plant::stepAir() noexcept {
@@ -136,8 +192,8 @@ void Plant::updateTruth() noexcept {
   const Eigen::Vector3d pull = tether_.endTension();
   const Polar tangent = polarOf(pull);
   truth_.tension = pull.norm();
-  truth_.reel_tension = tether_.reelTension();
-  truth_.length = reel_.length();
+  truth_.reel_tension = reel_.stalled() ? config_.reel.slip_tension : tether_.reelTension();
+  truth_.length = tether_.length();
   truth_.reel_scale = reel_.scale();
   truth_.tangent_elevation = tangent.elevation;
   truth_.tangent_azimuth = tangent.azimuth;
@@ -146,7 +202,7 @@ void Plant::updateTruth() noexcept {
   truth_.yaw = vehicle_.yaw();
   truth_.on_ground = truth_.p_WD.y() < ground_ + foot_ + kOnGround;
   truth_.motors_on = vehicle_.motorsOn();
-  truth_.gust = wind_.velocity();
+  truth_.gust = air();
   updateContacts();
 }
 
@@ -170,6 +226,13 @@ void Plant::updateContacts() noexcept {
     count(bend.solid, bend.point());
   }
   for (const FaceContact& c : faces) count(c.solid, tether_.contactPoint(c));
+}
+
+Eigen::Vector3d Plant::air() const noexcept {
+  Eigen::Vector3d velocity = wind_.velocity();
+  faults_.forEachActive(FaultTarget::kAir, FaultMode::kGust,
+                        [&](const Fault& f) { velocity += f.velocity; });
+  return velocity;
 }
 
 SensorInput Plant::sensorInput() const noexcept {

@@ -11,9 +11,12 @@
 
 #include "common/mission/scene.h"
 #include "common/time.h"
+#include "sim_hil/fault_schedule.h"
 #include "sim_hil/obstacles.h"
 #include "sim_hil/random.h"
 #include "sim_hil/reel.h"
+#include "sim_hil/reel_faults.h"
+#include "sim_hil/sensor_faults.h"
 #include "sim_hil/sensors.h"
 #include "sim_hil/sim_config.h"
 #include "sim_hil/tether_chain.h"
@@ -36,7 +39,23 @@ class Plant {
   [[nodiscard]] Duration stepDuration() const noexcept { return step_; }
   [[nodiscard]] const Truth& truth() const noexcept { return truth_; }
   [[nodiscard]] const TetherChain& tether() const noexcept { return tether_; }
-  [[nodiscard]] SensorReadings readSensors() noexcept { return sensors_.read(truth_.time); }
+
+  /// @name What the emulated devices know, faults included
+  /// @{
+  /// For a telegram: what the sensors have delivered.
+  [[nodiscard]] SensorReadings readSensors() noexcept {
+    return sensor_faults_.apply(sensors_.read(truth_.time), reel_.metresPerCount(), faults_);
+  }
+  /// Voltage of the ground battery as measured [V].
+  [[nodiscard]] double batteryVoltage() noexcept {
+    return sensor_faults_.voltage(vehicle_.batteryVoltage(), faults_);
+  }
+  /// The devices' own clock.
+  [[nodiscard]] Time clock() const noexcept { return clock_; }
+  /// @}
+
+  [[nodiscard]] FaultSchedule& faults() noexcept { return faults_; }
+  [[nodiscard]] const FaultSchedule& faults() const noexcept { return faults_; }
 
   [[nodiscard]] Vehicle& vehicle() noexcept { return vehicle_; }
   [[nodiscard]] const Vehicle& vehicle() const noexcept { return vehicle_; }
@@ -47,11 +66,15 @@ class Plant {
   Plant(const SimConfig& config, Obstacles obstacles, const Eigen::Vector3d& start,
         std::uint64_t seed);
 
+  void stepFaults() noexcept;
+  void stepReel() noexcept;
+  void stepClock() noexcept;
   void stepAir() noexcept;
   void checkCrash(const Eigen::Vector3d& v_before) noexcept;
   void crash(CrashReason reason) noexcept;
   void updateTruth() noexcept;
   void updateContacts() noexcept;
+  [[nodiscard]] Eigen::Vector3d air() const noexcept;
   [[nodiscard]] SensorInput sensorInput() const noexcept;
 
   SimConfig config_;
@@ -68,6 +91,15 @@ class Plant {
   Wind wind_;
   Truth truth_;
   Sensors sensors_;
+  FaultSchedule faults_;
+  SensorFaults sensor_faults_;
+  ReelFaults reel_faults_;
+  double behind_{0.0};  // tether that the drum has paid out and that is held back from the outlet [m]
+  bool held_{false};
+  bool cut_{false};
+  Time clock_{};
+  LooseContact clock_contact_;
+  bool clock_jumped_{false};
   int air_countdown_{0};
 };
 

@@ -24,19 +24,23 @@ void Reel::drive(double metres_per_second) noexcept {
 
 void Reel::step(double h, double tension) noexcept {
   constexpr double kSlipSpeed = 0.5;  // of a drive that gives way, per newton too much [m/s/N]
-  const double wanted = locked_ ? 0.0 : commanded_;
-  const double lagged = rate_ + (wanted - rate_) * (1.0 - std::exp(-h / std::fmax(config_.lag, h)));
+  const double asked = disturbance_.rate.value_or(wanted());
+  const double lagged = rate_ + (asked - rate_) * (1.0 - std::exp(-h / std::fmax(config_.lag, h)));
   const double change = config_.max_acceleration * h;
   rate_ = std::clamp(lagged, rate_ - change, rate_ + change);
   if (std::abs(rate_) < 1e-6) rate_ = 0.0;
   const double slip = kSlipSpeed * std::fmax(0.0, tension - config_.slip_tension);
   const double before = length_;
-  length_ = std::clamp(length_ + h * (rate_ + slip), config_.min_length, config_.max_length);
-  if (slip == 0.0) rate_ = (length_ - before) / h;  // an end stop stops the drum
+  const double shortest = std::fmax(config_.min_length, disturbance_.min_length);
+  const double follows = disturbance_.follows;
+  length_ = std::clamp(length_ + h * (follows * rate_ + slip), shortest, config_.max_length);
+  stalled_ = disturbance_.min_length > 0.0 && asked < 0.0 && length_ == shortest;
+  counted_ += h * (1.0 - follows) * rate_;
+  if (slip == 0.0 && follows == 1.0) rate_ = (length_ - before) / h;  // an end stop stops the drum
 }
 
 std::int64_t Reel::counts() const noexcept {
-  return std::llround(std::floor((length_ - config_.power_on_length) / metresPerCount()));
+  return std::llround(std::floor((length_ + counted_ - config_.power_on_length) / metresPerCount()));
 }
 
 double Reel::metresPerCount() const noexcept { return config_.metres_per_count * config_.scale; }

@@ -4,6 +4,7 @@
 /// The ground station's reel: a drum in rate mode with an encoder.
 
 #include <cstdint>
+#include <optional>
 
 #include "common/fields.h"
 
@@ -34,6 +35,13 @@ struct ReelConfig {
   }
 };
 
+/// What keeps the drum from doing as it is told.
+struct ReelDisturbance {
+  std::optional<double> rate;  ///< The drum is driven at this instead of the command [m/s].
+  double follows{1.0};         ///< Share of its turning that the tether follows.
+  double min_length{0.0};      ///< The tether is held: no less than this can be wound in [m].
+};
+
 /// Pay-out is positive. The command is a length rate in counts per second with the device's dead
 /// zone: nothing moves for commands within half its width of its centre (docs/simulator.md). Above
 /// the slip tension the drum turns backwards as fast as it must; the encoder sees that.
@@ -49,6 +57,7 @@ class Reel {
   void drive(double metres_per_second) noexcept;
   /// A locked reel does not follow commands; it still slips above the slip tension.
   void lock(bool locked) noexcept { locked_ = locked; }
+  void disturb(const ReelDisturbance& disturbance) noexcept { disturbance_ = disturbance; }
 
   /// Advances by h [s] under `tension` at the outlet [N]. Real-time safe: no allocation, no locks,
   /// no exceptions.
@@ -56,6 +65,10 @@ class Reel {
 
   [[nodiscard]] double length() const noexcept { return length_; }  ///< Tether out [m].
   [[nodiscard]] double rate() const noexcept { return rate_; }      ///< [m/s]
+  /// What it is asked for, by command and lock [m/s].
+  [[nodiscard]] double wanted() const noexcept { return locked_ ? 0.0 : commanded_; }
+  /// It winds in against a tether that is held, with all its force.
+  [[nodiscard]] bool stalled() const noexcept { return stalled_; }
   [[nodiscard]] std::int64_t counts() const noexcept;               ///< Encoder.
   [[nodiscard]] double metresPerCount() const noexcept;             ///< True.
   [[nodiscard]] double scale() const noexcept { return config_.scale; }
@@ -66,6 +79,9 @@ class Reel {
   double rate_{0.0};
   double commanded_{0.0};  // [m/s]
   bool locked_{false};
+  ReelDisturbance disturbance_;
+  double counted_{0.0};  // turned without tether [m]
+  bool stalled_{false};
 };
 
 }  // namespace tautline::sim

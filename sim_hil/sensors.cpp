@@ -34,7 +34,12 @@ void Sensors::step(Time now, const SensorInput& truth, Random& random) noexcept 
 }
 
 SensorReadings Sensors::read(Time now) noexcept {
-  return {encoder_.read(now), angles_.read(now), attitude_.read(now), barometer_.read(now)};
+  SensorReadings readings;
+  readings.counts = encoder_.read(now);
+  readings.tangent = angles_.read(now);
+  readings.attitude = attitude_.read(now);
+  readings.altitude = barometer_.read(now);
+  return readings;
 }
 
 }  // namespace tautline::sim

@@ -72,6 +72,12 @@ struct SensorReadings {
   Polar tangent;
   Eigen::Quaterniond attitude{Eigen::Quaterniond::Identity()};
   double altitude{0.0};
+  /// @name Sensors whose telegram is not sent
+  /// @{
+  bool encoder_silent{false};
+  bool angles_silent{false};
+  bool attitude_silent{false};
+  /// @}
 };
 
 /// Samples on their way from the sensor to its reader. Holds the last kCapacity; at rate x latency

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "sim_hil/fotokite_emulator.h"
+#include "sim_hil/frame_faults.h"
+#include "sim_hil/link_faults.h"
 #include "sim_hil/plant.h"
 #include "sim_hil/tautline_emulator.h"
 #include "sim_hil/tautline_wire.h"
@@ -47,7 +49,10 @@ class FotokiteMachine final : public Machine {
 class TautlineMachine final : public Machine {
  public:
   TautlineMachine(const SimConfig& config, Plant& plant)
-      : wire_(wireOf(config.device)), parser_(wire_), devices_(config.tautline, plant) {}
+      : wire_(wireOf(config.device)),
+        parser_(wire_),
+        devices_(config.tautline, plant),
+        faults_(plant.faults()) {}
   void advance() noexcept override { devices_.advance(); }
   void receive(std::span<const std::uint8_t> bytes) noexcept override {
     parser_.push(
@@ -60,9 +65,12 @@ class TautlineMachine final : public Machine {
   std::size_t transmit(std::span<std::uint8_t> out) noexcept override {
     std::size_t size = append(replies_, out, 0);
     replies_.size = 0;
+    constexpr std::size_t kRoom = FrameFaults::kMostFrames * sizeof(WireBytes::buffer);
     TautlineFrame frame;
-    while (out.size() - size >= WireBytes{}.buffer.size() && devices_.transmit(frame))
-      size += append(encodeFrame(wire_, frame), out, size);
+    while (out.size() - size >= kRoom && devices_.transmit(frame)) {
+      for (const TautlineFrame& passed : frame_faults_.pass(frame, faults_).all())
+        size += append(encodeFrame(wire_, passed), out, size);
+    }
     return size;
   }
 
@@ -77,6 +85,8 @@ class TautlineMachine final : public Machine {
   Wire wire_;
   WireParser parser_;
   TautlineEmulator devices_;
+  FaultSchedule& faults_;
+  FrameFaults frame_faults_;
   WireBytes replies_;
 };
 
@@ -88,12 +98,23 @@ std::unique_ptr<Machine> makeMachine(const SimConfig& config, Plant& plant) {
 
 }  // namespace
 
+/// Everything but the constructor: real-time safe: no allocation, no locks, no exceptions.
 struct Simulator::Impl {
   Impl(const SimConfig& config, const Scene& world, std::uint64_t seed)
       : plant(effective(config), world, seed), machine(makeMachine(config, plant)) {}
 
+  /// Commands that were held back on the uplink reach the machine.
+  void deliver() noexcept {
+    if (!uplink.needed(plant.faults())) return;
+    while (const std::size_t arrived = uplink.take(passing, plant.faults()))
+      machine->receive(std::span(passing).first(arrived));
+  }
+
   Plant plant;
   std::unique_ptr<Machine> machine;
+  FaultyLink uplink{true};
+  FaultyLink downlink{false};
+  std::array<std::uint8_t, 4096> passing{};
 };
 
 Simulator::Simulator(const SimConfig& config, const Scene& world, std::uint64_t seed)
@@ -107,15 +128,27 @@ void Simulator::advanceTo(Time t) noexcept {
     impl_->plant.step();
     impl_->machine->advance();
   }
+  impl_->deliver();
 }
 
 void Simulator::receive(std::span<const std::uint8_t> bytes) noexcept {
-  impl_->machine->receive(bytes);
+  if (!impl_->uplink.needed(impl_->plant.faults())) {
+    impl_->machine->receive(bytes);
+    return;
+  }
+  impl_->uplink.put(bytes, impl_->plant.faults());
+  impl_->deliver();
 }
 
 std::size_t Simulator::transmit(std::span<std::uint8_t> out) noexcept {
-  return impl_->machine->transmit(out);
+  FaultSchedule& faults = impl_->plant.faults();
+  if (!impl_->downlink.needed(faults)) return impl_->machine->transmit(out);
+  while (const std::size_t sent = impl_->machine->transmit(impl_->passing))
+    impl_->downlink.put(std::span(impl_->passing).first(sent), faults);
+  return impl_->downlink.take(out, faults);
 }
+
+bool Simulator::inject(const Fault& fault) noexcept { return impl_->plant.faults().add(fault); }
 
 const Truth& Simulator::truth() const noexcept { return impl_->plant.truth(); }
 Time Simulator::now() const noexcept { return impl_->plant.now(); }

@@ -19,6 +19,7 @@
 
 #include "common/mission/scene.h"
 #include "common/time.h"
+#include "sim_hil/fault.h"
 #include "sim_hil/sim_config.h"
 #include "sim_hil/truth.h"
 
@@ -46,6 +47,10 @@ class Simulator {
   /// takes are dropped whole once the device's buffer is full. Real-time safe: no allocation, no
   /// locks, no exceptions.
   [[nodiscard]] std::size_t transmit(std::span<std::uint8_t> out) noexcept;
+
+  /// Schedules a fault that has passed checkFault(); a time that is past means now. False if too
+  /// many are scheduled already. Real-time safe: no allocation, no locks, no exceptions.
+  [[nodiscard]] bool inject(const Fault& fault) noexcept;
 
   [[nodiscard]] const Truth& truth() const noexcept;
   [[nodiscard]] Time now() const noexcept;

@@ -73,7 +73,7 @@ bool TautlineEmulator::obeyRates(std::uint64_t bits) noexcept {
   rates_.elevation = rate(13, bus::kAngleUnit, bus::kMaxAngleRate);
   rates_.azimuth = rate(26, bus::kAngleUnit, bus::kMaxAngleRate);
   rates_.yaw = rate(39, bus::kAngleUnit, bus::kMaxAngleRate);
-  last_rates_ = plant_.now();
+  last_rates_ = plant_.clock();
   obeyRatesNow();
   return true;
 }
@@ -128,7 +128,7 @@ void TautlineEmulator::stopMotors() noexcept {
 }
 
 void TautlineEmulator::advance() noexcept {
-  const Time now = plant_.now();
+  const Time now = plant_.clock();
   const bool on = plant_.vehicle().motorsOn();
   if (was_on_ && !on) {
     motors_stopped_ = now;
@@ -141,7 +141,7 @@ void TautlineEmulator::advance() noexcept {
         !last_rates_ || now - *last_rates_ > fromSeconds(config_.landing_timeout);
     if (flying() && long_silent) plant_.vehicle().emergencyLand();
   }
-  if (flying() && plant_.vehicle().batteryVoltage() < plant_.vehicle().config().battery_empty)
+  if (flying() && plant_.batteryVoltage() < plant_.vehicle().config().battery_empty)
     plant_.vehicle().emergencyLand();
   if (now < next_sensors_) return;
   const Duration period = fromSeconds(1.0 / config_.sensor_rate);
@@ -151,7 +151,7 @@ void TautlineEmulator::advance() noexcept {
 }
 
 bool TautlineEmulator::commandsMissing() const noexcept {
-  return !last_rates_ || plant_.now() - *last_rates_ > bus::kCommandTimeout;
+  return !last_rates_ || plant_.clock() - *last_rates_ > bus::kCommandTimeout;
 }
 
 bool TautlineEmulator::flying() const noexcept {
@@ -161,36 +161,44 @@ bool TautlineEmulator::flying() const noexcept {
 }
 
 bool TautlineEmulator::batteryTooLow() const noexcept {
-  return plant_.vehicle().batteryVoltage() < plant_.vehicle().config().battery_critical;
+  return plant_.batteryVoltage() < plant_.vehicle().config().battery_critical;
 }
 
 FlightMode TautlineEmulator::flightMode() const noexcept {
+  const FaultSchedule& faults = plant_.faults();
+  if (const Fault* said = faults.active(FaultTarget::kFlightMode, FaultMode::kOn))
+    return static_cast<FlightMode>(vehicleFlightModes()[said->code].tautline);
   if (plant_.truth().crashed) return FlightMode::kFault;
   const FlightPhase phase = plant_.vehicle().phase();
   if (phase == FlightPhase::kEmergencyLand) return FlightMode::kLanding;
   if (flying()) return FlightMode::kFlying;
   if (phase == FlightPhase::kParked && batteryTooLow()) return FlightMode::kFault;
-  const bool just_stopped = has_flown_ && plant_.now() - motors_stopped_ < kStopShown;
+  const bool just_stopped = has_flown_ && plant_.clock() - motors_stopped_ < kStopShown;
   return stopped_in_air_ || just_stopped ? FlightMode::kStopped : FlightMode::kIdle;
 }
 
 std::uint8_t TautlineEmulator::flags() const noexcept {
   const Vehicle& vehicle = plant_.vehicle();
   unsigned bits = 0;
-  if (vehicle.batteryVoltage() < vehicle.config().battery_low) bits |= bus::kLowBattery;
+  if (plant_.batteryVoltage() < vehicle.config().battery_low) bits |= bus::kLowBattery;
   if (batteryTooLow()) bits |= bus::kCriticalBattery;
   if (flying() && commandsMissing()) bits |= bus::kNoCommands;
   if (flying() && plant_.truth().tension < kSlackTension) bits |= bus::kSlackTether;
+  plant_.faults().forEachActive(FaultTarget::kFlag, FaultMode::kOn, [&](const Fault& said) {
+    bits |= static_cast<unsigned>(vehicleFlags()[said.code].tautline);
+  });
   return static_cast<std::uint8_t>(bits);
 }
 
 void TautlineEmulator::sendSensors() noexcept {
   const SensorReadings s = plant_.readSensors();
   const Vehicle& vehicle = plant_.vehicle();
-  send(bus::kReelId, field(static_cast<double>(s.counts), 1.0, 0, 24, true) |
+  if (!s.encoder_silent)
+    send(bus::kReelId, field(static_cast<double>(s.counts), 1.0, 0, 24, true) |
                          field(plant_.reel().rate(), bus::kSpeedUnit, 24, 14, true) |
                          field(plant_.truth().reel_tension, bus::kTensionUnit, 38, 14, false));
-  send(bus::kAnglesId, field(s.tangent.elevation, bus::kAngleUnit, 0, 16, true) |
+  if (!s.angles_silent)
+    send(bus::kAnglesId, field(s.tangent.elevation, bus::kAngleUnit, 0, 16, true) |
                            field(wrapped(s.tangent.azimuth), bus::kAngleUnit, 16, 16, true));
   const Eigen::Quaterniond& q = s.attitude;
   std::uint64_t bits = 0;
@@ -199,11 +207,11 @@ void TautlineEmulator::sendSensors() noexcept {
     bits |= field(part, bus::kQuaternionUnit, start, 13, true);
     start += 13;
   }
-  send(bus::kAttitudeId, bits);
+  if (!s.attitude_silent) send(bus::kAttitudeId, bits);
   send(bus::kVehicleId,
        field(static_cast<double>(static_cast<int>(flightMode())), 1.0, 0, 4, false) |
            field(flags(), 1.0, 4, 8, false) |
-           field(vehicle.batteryVoltage(), bus::kVoltageUnit, 12, 10, false) |
+           field(plant_.batteryVoltage(), bus::kVoltageUnit, 12, 10, false) |
            field(vehicle.gimbalPitch(), bus::kGimbalUnit, 22, 9, true));
 }
 

@@ -12,6 +12,7 @@ constexpr double kGravity = 9.81;        // [m/s^2]
 constexpr double kAirDensity = 1.2;      // [kg/m^3]
 constexpr double kContactMargin = 0.01;  // [m]
 constexpr double kMaxBendDepth = 0.02;   // a link deeper in a solid is not bent round its edge [m]
+constexpr double kHeldMass = 1e6;        // of a node that is held in space [kg]
 constexpr double kCreep = 0.002;         // slip speed below which friction is viscous [m/s]
 
 }  // namespace
@@ -26,7 +27,8 @@ TetherChain::TetherChain(const TetherConfig& config, const Eigen::Vector3d& p_WD
 
 void TetherChain::step(double h, double L, const EndLoad& end, const Eigen::Vector3d& wind,
                        const Obstacles& obstacles) noexcept {
-  wrap_.update({x_.data(), at(n_ + 1)}, config_.friction);
+  if (disturbance_.no_contacts) wrap_ = {};
+  wrap_.update({x_.data(), at(n_ + 1)}, friction());
   moveMesh(h);
   const double L_rate = (L - L_) / h;
   L_ = L;
@@ -83,7 +85,7 @@ void TetherChain::findContacts(const Obstacles& obstacles, double L_rate) noexce
   const std::array<FaceContact, kMaxFaceContacts> last = face_;
   const int last_count = face_count_;
   face_count_ = 0;
-  if (obstacles.solids().empty()) return;
+  if (obstacles.solids().empty() || disturbance_.no_contacts) return;
   Aabb whole;
   for (int i = 0; i <= n_; ++i) whole.include(x_[at(i)]);
   std::array<std::size_t, kMaxSolids> near{};
@@ -146,7 +148,7 @@ void TetherChain::setFriction(FaceContact& c, std::span<const FaceContact> last,
   const Eigen::Vector3d t = (x_[at(c.link + 1)] - x_[at(c.link)]).normalized();
   Eigen::Vector3d slip = (1.0 - c.s) * v_[at(c.link)] + c.s * v_[at(c.link + 1)] + c.flow * t;
   slip -= c.normal * c.normal.dot(slip);
-  c.friction = config_.friction * force / std::fmax(slip.norm(), kCreep);
+  c.friction = friction() * force / std::fmax(slip.norm(), kCreep);
 }
 
 void TetherChain::prepare(double h, double L_rate, const EndLoad& end,
@@ -171,11 +173,15 @@ void TetherChain::prepare(double h, double L_rate, const EndLoad& end,
     ground_friction_[at(i)] =
         config_.floor_friction * ground_force_[at(i)] / std::fmax(slip, kCreep);
   }
+  if (const int held = disturbance_.held_node; held > 0) {
+    mass_[at(held)] = kHeldMass;
+    x_free_[at(held)] = x_old_[at(held)];
+  }
   // Capstan law of bent links, T_drone / T_reel = exp(mu * turn) when sliding towards the drone, as
   // a viscous coefficient with the tension and the slip of the last step.
   for (int j = 0; j < n_; ++j) {
     const double limit =
-        bent_[at(j)] ? 2.0 * tension_[at(j)] * std::tanh(0.5 * config_.friction * way(j).turn)
+        bent_[at(j)] ? 2.0 * tension_[at(j)] * std::tanh(0.5 * friction() * way(j).turn)
                      : 0.0;
     rub_[at(j)] = limit / std::fmax(std::abs(slip_[at(j)]), kCreep);
     if (!bent_[at(j)]) slip_[at(j)] = rubbing_[at(j)] = 0.0;

@@ -15,6 +15,7 @@
 /// flows through the nodes, and friction acts on the material, not on the nodes.
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -64,6 +65,14 @@ struct EndLoad {
   double ground{-1e9};                             ///< Lowest height the attachment can have [m].
 };
 
+/// What is wrong with the tether, or with what holds it.
+struct TetherDisturbance {
+  int held_node{0};                ///< Held in space where it is; 0 none (the outlet always is).
+  int cut_link{-1};                ///< Carries no force; -1 none.
+  std::optional<double> friction;  ///< On obstacles instead of the configured one.
+  bool no_contacts{false};         ///< Obstacles do not hold the tether.
+};
+
 class TetherChain {
  public:
   /// Straight from the outlet at the origin to `p_WD`, at rest, with unstretched length `L` > 0.
@@ -74,6 +83,10 @@ class TetherChain {
   /// [m/s]. Real-time safe: no allocation, no locks, no exceptions.
   void step(double h, double L, const EndLoad& end, const Eigen::Vector3d& wind,
             const Obstacles& obstacles) noexcept;
+
+  /// In force until the next call.
+  void disturb(const TetherDisturbance& disturbance) noexcept { disturbance_ = disturbance; }
+  [[nodiscard]] int cutLink() const noexcept { return disturbance_.cut_link; }
 
   [[nodiscard]] int linkCount() const noexcept { return n_; }
   [[nodiscard]] const Eigen::Vector3d& position(int node) const noexcept { return x_[at(node)]; }
@@ -111,6 +124,9 @@ class TetherChain {
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
   [[nodiscard]] double linkLength(int link) const noexcept { return mesh_.fraction(link) * L_; }
   [[nodiscard]] TetherWrap::Way way(int link) const noexcept;
+  [[nodiscard]] double friction() const noexcept {
+    return disturbance_.friction.value_or(config_.friction);
+  }
 
   // tether_chain.cpp
   void moveMesh(double h) noexcept;
@@ -134,6 +150,7 @@ class TetherChain {
   void solve() noexcept;
 
   TetherConfig config_;
+  TetherDisturbance disturbance_;
   int n_;
   double L_;
   TetherMesh mesh_;

@@ -94,7 +94,8 @@ void TetherChain::assemble(double h, const Obstacles& obstacles, const EndLoad& 
 double TetherChain::linkForce(double h, int link, double length, double& stiffness) const noexcept {
   const double elastic = config_.axial_stiffness / linkLength(link);
   const double damping = elastic * config_.axial_damping_time / h;
-  stiffness = elastic + damping;
+  stiffness = link == disturbance_.cut_link ? 0.0 : elastic + damping;
+  if (stiffness == 0.0) return 0.0;
   return stiffness * (length - linkLength(link)) - damping * stretch_[at(link)];
 }
 

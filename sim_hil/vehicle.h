@@ -6,6 +6,7 @@
 /// of its own: it feels the tether's direction and tension, and its velocity. World frame W.
 
 #include <cstdint>
+#include <optional>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -100,6 +101,12 @@ struct VehicleSense {
   bool on_ground{true};
 };
 
+/// What keeps the vehicle from flying as it should.
+struct VehicleDisturbance {
+  double thrust_limit{1.0};       ///< Share of the largest thrust that is left.
+  std::optional<double> tension;  ///< The onboard loop pulls with this instead of its own [N].
+};
+
 enum class FlightPhase : std::uint8_t {
   kParked,         ///< Motors off.
   kSpoolUp,        ///< Motors start, still standing.
@@ -121,6 +128,7 @@ class Vehicle {
   void emergencyLand() noexcept;
   /// Rates in force until the next call.
   void command(const VehicleRates& rates) noexcept { rates_ = rates; }
+  void disturb(const VehicleDisturbance& disturbance) noexcept { disturbance_ = disturbance; }
 
   /// Advances by h [s]. Real-time safe: no allocation, no locks, no exceptions.
   void step(double h, const VehicleSense& sense) noexcept;
@@ -151,6 +159,7 @@ class Vehicle {
   FlightPhase phase_{FlightPhase::kParked};
   double phase_time_{0.0};
   VehicleRates rates_;
+  VehicleDisturbance disturbance_;
   Polar setpoint_;
   Polar setpoint_rate_;  // of this step, after limits
   double yaw_{0.0};

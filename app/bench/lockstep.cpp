@@ -38,8 +38,7 @@ StationConfig forBench(const LockstepConfig& config) {
 
 sim::SimConfig simOf(const LockstepConfig& config) {
   sim::SimConfig sim = config.sim;
-  sim.device = config.station.device == DeviceKind::kFotokite ? sim::SimDevice::kFotokite
-                                                              : sim::SimDevice::kTautlineSerial;
+  sim.device = Lockstep::simDevice(config);
   return sim;
 }
 
@@ -69,13 +68,16 @@ std::unique_ptr<Device> makeDevice(const StationConfig& config, BytePort& port, 
 Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
     : config_(forBench(config)),
       period_(fromSeconds(1.0 / config_.loop_rate_hz)),
+      sim_device_(simDevice(config)),
       simulator_(simOf(config), config.world, config.seed),
+      faults_(config.seed),
       port_(simulator_),
       frames_(makeFrames(config_.device, port_)),
       device_(makeDevice(config_, port_, frames_.get())),
       station_(config_.core),
-      sink_(sink) {
-  if (sink_ == nullptr) return;
+      floor_(config.world.floor) {
+  if (sink == nullptr) return;
+  sink_.emplace(*sink, faults_);
   telemetry_ = std::make_unique<Telemetry>(*sink_, config_.run_mode, Duration::zero(),
                                            fromSeconds(1.0 / config_.telemetry_rate_hz));
   telemetry_->setParams("tautline-bench", kVersion, dumpConfig(config_));
@@ -85,14 +87,23 @@ Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
 
 const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
                                  const tautline::mission_chunk_t* chunk) {
-  now_ += period_;
+  faults_.update(now_);
+  const Duration late = faults_.lateness();
+  now_ += period_ + late;
   simulator_.advanceTo(now_);
-  input_.now = now_;
-  device_->read(now_, input_.sensors);
-  input_.command = command;
-  input_.chunk = chunk;
+  if (faults_.unplugged() != unplugged_) {
+    unplugged_ = !unplugged_;
+    unplugged_ ? port_.unplug() : port_.plug();
+  }
+  input_.now = now_ + faults_.clockAhead();
+  device_->read(input_.now, input_.sensors);
+  input_.command = faults_.hear(command);
+  input_.chunk = faults_.operatorCut() ? nullptr : chunk;
+  input_.missed_in_a_row =
+      late > Duration::zero() ? input_.missed_in_a_row + static_cast<std::int32_t>(late / period_)
+                              : 0;
   const StepOutput& out = station_.step(input_);
-  device_->write(now_, out.command);
+  device_->write(input_.now, out.command);
   output_ = &out;
   statistics_.record(Duration::zero(), Duration::zero(), 0);
   if (telemetry_) {
@@ -107,10 +118,28 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
   return out;
 }
 
+sim::SimDevice Lockstep::simDevice(const LockstepConfig& config) noexcept {
+  return config.station.device == DeviceKind::kFotokite ? sim::SimDevice::kFotokite
+                                                        : sim::SimDevice::kTautlineSerial;
+}
+
+void Lockstep::inject(const sim::Fault& fault) {
+  sim::checkFault(fault, sim_device_, true);
+  const sim::FaultKind* kind = sim::findFaultKind(fault.target, fault.mode);
+  // `ok` heals whatever is there, on both sides.
+  const bool ours = kind == nullptr || kind->place == sim::FaultPlace::kBench;
+  const bool machines = kind == nullptr || kind->place != sim::FaultPlace::kBench;
+  if ((ours && !faults_.add(fault)) || (machines && !simulator_.inject(fault))) {
+    throw InputError({.key = describe(fault),
+                      .problem = "too many faults at once",
+                      .allowed = "at most " + std::to_string(sim::kMaxFaults)});
+  }
+}
+
 template <class Message>
 void Lockstep::record(const char* channel, Message message) noexcept {
   std::array<std::uint8_t, 4096> buffer{};
-  message.utime = toMicroseconds(now_);
+  message.utime = toMicroseconds(input_.now);
   const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
   if (size > 0)
     sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});

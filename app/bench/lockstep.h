@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
+#include "app/bench/bench_faults.h"
 #include "app/bench/memory_port.h"
 #include "app/station/station.h"
 #include "app/station/station_config.h"
@@ -38,14 +40,23 @@ class Lockstep {
   /// InputError.
   Lockstep(const LockstepConfig& config, TelemetrySink* sink);
 
+  /// The emulated device of a flight with this configuration.
+  [[nodiscard]] static sim::SimDevice simDevice(const LockstepConfig& config) noexcept;
+
   /// One cycle, with an operator's command or a piece of a mission if there is one.
   const StepOutput& step(const std::optional<OperatorCommand>& command = {},
                          const tautline::mission_chunk_t* chunk = nullptr);
 
+  /// Schedules a fault of machine or bench; a time that is past means now. Throws InputError if
+  /// this device cannot have it, or if too many are scheduled already.
+  void inject(const sim::Fault& fault);
+
   [[nodiscard]] Time now() const noexcept { return now_; }
+  [[nodiscard]] const StationConfig& station() const noexcept { return config_; }
   [[nodiscard]] const StepOutput& output() const noexcept { return *output_; }
   [[nodiscard]] const sim::Truth& truth() const noexcept { return simulator_.truth(); }
   [[nodiscard]] const SensorFrame& sensors() const noexcept { return input_.sensors; }
+  [[nodiscard]] double floor() const noexcept { return floor_; }  ///< In W [m].
   [[nodiscard]] MemoryPort& port() noexcept { return port_; }
 
  private:
@@ -56,12 +67,14 @@ class Lockstep {
 
   StationConfig config_;  ///< Effective: mode and home are the bench's.
   Duration period_;
+  sim::SimDevice sim_device_;
   sim::Simulator simulator_;
+  BenchFaults faults_;
   MemoryPort port_;
   std::unique_ptr<FramePort> frames_;  ///< On the Tautline bus only.
   std::unique_ptr<Device> device_;
   Station station_;
-  TelemetrySink* sink_;
+  std::optional<FaultySink> sink_;
   std::unique_ptr<Telemetry> telemetry_;
   StepInput input_;
   const StepOutput* output_{nullptr};
@@ -69,6 +82,8 @@ class Lockstep {
   Time next_truth_{};
   Time next_loop_{};
   LoopStatistics statistics_;
+  double floor_;
+  bool unplugged_{false};
 };
 
 /// How a scripted flight ended.

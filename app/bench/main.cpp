@@ -17,6 +17,8 @@
 #include "app/bench/lockstep.h"
 #include "app/bench/log_sink.h"
 #include "app/bench/replay.h"
+#include "app/bench/safety_command.h"
+#include "app/bench/scenario_command.h"
 #include "app/station/recording.h"
 #include "app/version.h"
 #include "common/clock.h"
@@ -196,6 +198,8 @@ int main(int argc, char** argv) {
   ExitCode result = ExitCode::kOk;
   addFly(app, options, result);
   addReplay(app, options, result);
+  bench::addScenarioCommand(app, result);
+  bench::addSafetyCommand(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -1,0 +1,129 @@
+#include "app/bench/case_report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+#include "common/toml/toml_writer.h"
+
+namespace tautline::bench {
+namespace {
+
+std::string xmlText(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+template <class Enum, class Names>
+Enum valueOf(const std::string& name, const Names& names) {
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const auto& n) { return name == n.name; });
+  return found == names.end() ? Enum{} : found->value;
+}
+
+double flightSeconds(const std::vector<CaseResult>& results) {
+  double sum = 0.0;
+  for (const CaseResult& r : results) sum += r.flight_s;
+  return sum;
+}
+
+}  // namespace
+
+std::string toJson(const CaseResult& r) {
+  return nlohmann::json{{"name", r.name},
+                        {"seed", r.seed},
+                        {"passed", r.passed()},
+                        {"failure", r.failure},
+                        {"end", nameOf(r.end, kModeNames)},
+                        {"crash", nameOf(r.crash, sim::kCrashReasonNames)},
+                        {"faulted", r.faulted},
+                        {"flight_s", r.flight_s},
+                        {"wall_s", r.wall_s},
+                        {"height_max_m", r.height_max_m}}
+      .dump();
+}
+
+CaseResult caseFromJson(const std::string& line) {
+  CaseResult r;
+  try {
+    const nlohmann::json j = nlohmann::json::parse(line);
+    r.name = j.at("name");
+    r.seed = j.at("seed");
+    r.failure = j.at("failure");
+    r.end = valueOf<Mode>(j.at("end"), kModeNames);
+    r.crash = valueOf<sim::CrashReason>(j.at("crash"), sim::kCrashReasonNames);
+    r.faulted = j.at("faulted");
+    r.flight_s = j.at("flight_s");
+    r.wall_s = j.at("wall_s");
+    r.height_max_m = j.at("height_max_m");
+  } catch (const nlohmann::json::exception&) {
+    throw InputError({.problem = "\"" + line.substr(0, 60) + "\" is no result of a case"},
+                     ExitCode::kFailed);
+  }
+  return r;
+}
+
+std::string failureLine(const CaseResult& r, const std::string& repeat) {
+  return fmt::format("FAILED {}: {}; again: {}", r.name, r.failure, repeat);
+}
+
+std::string summary(const std::vector<CaseResult>& results, double wall_s) {
+  const auto passed = std::count_if(results.begin(), results.end(),
+                                    [](const CaseResult& r) { return r.passed(); });
+  return fmt::format("{} passed, {} failed; {:.0f} s of flight in {:.1f} s, {:.0f} times real time, "
+                     "{:.1f} cases a second",
+                     passed, static_cast<std::ptrdiff_t>(results.size()) - passed,
+                     flightSeconds(results), wall_s, flightSeconds(results) / wall_s,
+                     static_cast<double>(results.size()) / wall_s);
+}
+
+void writeJunit(const std::string& path, const std::string& suite,
+                const std::vector<CaseResult>& results) {
+  const auto failed = std::count_if(results.begin(), results.end(),
+                                    [](const CaseResult& r) { return !r.passed(); });
+  std::string xml = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n",
+      xmlText(suite), results.size(), failed);
+  for (const CaseResult& r : results) {
+    xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", xmlText(suite),
+                       xmlText(fmt::format("{} seed {}", r.name, r.seed)), r.wall_s);
+    xml += r.passed() ? "/>\n"
+                      : fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n",
+                                    xmlText(r.failure));
+  }
+  writeFileAtomically(path, xml + "</testsuite>\n");
+}
+
+void writeJson(const std::string& path, const std::vector<CaseResult>& results) {
+  std::string text = "[";
+  for (const CaseResult& r : results) text += (text.size() > 1 ? ",\n " : "\n ") + toJson(r);
+  writeFileAtomically(path, text + "\n]\n");
+}
+
+bool allPassed(const std::vector<CaseResult>& results) {
+  return std::all_of(results.begin(), results.end(),
+                     [](const CaseResult& r) { return r.passed(); });
+}
+
+}  // namespace tautline::bench

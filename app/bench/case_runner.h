@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file
+/// Flies one case and says what came of it.
+
+#include <string>
+
+#include "app/bench/flight_case.h"
+
+namespace tautline::bench {
+
+struct CaseResult {
+  std::string name;
+  std::uint64_t seed{0};
+  std::string failure;  ///< What was expected and what happened; empty: passed.
+  Mode end{Mode::kStandby};
+  sim::CrashReason crash{sim::CrashReason::kNone};
+  bool faulted{false};     ///< The first fault has begun: the flight got that far.
+  double flight_s{0.0};    ///< Virtual time.
+  double wall_s{0.0};
+  double height_max_m{0.0};  ///< Over the floor.
+
+  [[nodiscard]] bool passed() const noexcept { return failure.empty(); }
+};
+
+/// Flies until the station has been back in STANDBY or in ESTOP for a while, the vehicle has
+/// crashed, or the time is over; ends at the first thing that is wrong. `sink` as in Lockstep.
+/// Throws InputError for a fault that this device cannot have.
+[[nodiscard]] CaseResult runCase(const FlightCase& flight, TelemetrySink* sink);
+
+}  // namespace tautline::bench

@@ -1,0 +1,144 @@
+#include "app/bench/scenario_command.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fmt/format.h>
+
+#include "app/bench/case_report.h"
+#include "app/bench/log_sink.h"
+#include "app/bench/worker_pool.h"
+#include "common/clock.h"
+
+namespace tautline::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSuffix = ".scenario.toml";
+
+struct Options {
+  std::string path;
+  std::string glob{"*"};
+  int iterations{1};
+  int jobs{0};
+  std::optional<std::uint64_t> seed;
+  std::string junit;
+  std::string log;
+  bool json{false};
+};
+
+/// A scenario file flown with one seed.
+struct Run {
+  std::string file;
+  FlightCase flight;
+};
+
+std::vector<std::string> filesOf(const std::string& path) {
+  if (!fs::is_directory(path)) return {path};
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+    if (entry.path().string().ends_with(kSuffix)) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<Run> select(const Options& o) {
+  std::vector<Run> runs;
+  std::string names;
+  for (const std::string& file : filesOf(o.path)) {
+    const FlightCase flight = readScenario(file);
+    names += (names.empty() ? "" : ", ") + flight.name;
+    if (::fnmatch(o.glob.c_str(), flight.name.c_str(), 0) != 0) continue;
+    for (int i = 0; i < o.iterations; ++i) {
+      runs.push_back({file, flight});
+      runs.back().flight.bench.seed =
+          o.seed.value_or(flight.bench.seed) + static_cast<std::uint64_t>(i);
+    }
+  }
+  if (runs.empty()) {
+    throw InputError({.file = o.path,
+                      .problem = names.empty() ? std::string("holds no *") + kSuffix
+                                               : "no scenario is named \"" + o.glob + "\"",
+                      .allowed = names,
+                      .remedy = "choose others with --case"},
+                     ExitCode::kFailed);
+  }
+  return runs;
+}
+
+std::string logName(const FlightCase& flight) {
+  std::string name = flight.name;
+  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return fmt::format("{}_{}.lcm", name, flight.bench.seed);
+}
+
+ExitCode flyScenarios(const Options& o) {
+  const std::vector<Run> runs = select(o);
+  if (!o.log.empty()) fs::create_directories(o.log);
+  PoolJob job;
+  job.count = runs.size();
+  job.workers = o.jobs;
+  job.name = [&](std::size_t i) { return runs[i].flight.name; };
+  job.fly = [&](std::size_t i) {
+    const FlightCase& flight = runs[i].flight;
+    const auto sink =
+        o.log.empty() ? nullptr : std::make_unique<LogSink>(fs::path(o.log) / logName(flight));
+    return runCase(flight, sink.get());
+  };
+  const Time began = monotonicNow();
+  const std::vector<CaseResult> results = flyAll(job);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const CaseResult& r = results[i];
+    if (o.json) {
+      fmt::print("{}\n", toJson(r));
+    } else if (!r.passed()) {
+      fmt::print("{}\n", failureLine(r, fmt::format("tautline-bench scenario {} --seed {}",
+                                                    runs[i].file, runs[i].flight.bench.seed)));
+    } else {
+      fmt::print("passed {} seed {}: {:.1f} s, ended in {}{}\n", r.name, r.seed, r.flight_s,
+                 nameOf(r.end, kModeNames),
+                 r.crash == sim::CrashReason::kNone
+                     ? std::string()
+                     : fmt::format(", crash: {}", nameOf(r.crash, sim::kCrashReasonNames)));
+    }
+  }
+  if (!o.json) fmt::print("{}\n", summary(results, toSeconds(monotonicNow() - began)));
+  if (!o.junit.empty()) writeJunit(o.junit, "scenarios", results);
+  return allPassed(results) ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+}  // namespace
+
+void addScenarioCommand(CLI::App& app, ExitCode& result) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "scenario", "Fly scenario files, faults and all; exit code 0 only if all passed");
+  verb->add_option("path", options->path, "a scenario file, or a folder of *.scenario.toml")
+      ->required();
+  verb->add_option("--case", options->glob, "only those whose name fits, e.g. 'enc*'")
+      ->capture_default_str();
+  verb->add_option("--iterations", options->iterations, "fly each with this many seeds in a row")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  verb->add_option("--seed", options->seed, "first seed (default: the file's)");
+  verb->add_option("--jobs", options->jobs, "processes; 0: one for each processor")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  verb->add_option("--junit", options->junit, "write JUnit's XML");
+  verb->add_option("--log", options->log, "write an LCM log of each flight into this folder");
+  verb->add_flag("--json", options->json, "one JSON object a flight instead of words");
+  verb->footer("Example: tautline-bench scenario config/scenarios --case 'enc*' --iterations 20");
+  verb->callback([options, &result] { result = flyScenarios(*options); });
+}
+
+}  // namespace tautline::bench
