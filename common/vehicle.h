@@ -187,6 +187,8 @@ enum class VehicleAction : std::uint8_t {
   kTakeoff,    ///< Start motors and lift off; repeated by the supervisor until the vehicle says it
                ///< flies.
   kMotorStop,  ///< Motors off at once.
+  kLand,       ///< Come down where you are, by yourself, and stop the motors there. A vehicle that
+               ///< cannot does what the rates say.
 };
 
 /// What the station commands in one cycle. Rates are of the vehicle's own set-points, relative to

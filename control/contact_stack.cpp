@@ -15,13 +15,14 @@ ContactStack::Change ContactStack::select(int id, const MissionPlan& plan) noexc
     return change;
   }
   const MissionContact* contact = plan.findContact(id);
-  if (contact == nullptr) return Change::kUnknownId;
-  if (!contact->p_WC.allFinite()) return Change::kBadPoint;
+  return contact != nullptr ? push(id, contact->p_WC) : Change::kUnknownId;
+}
+
+ContactStack::Change ContactStack::push(int id, const Eigen::Vector3d& p_WC) noexcept {
+  if (!p_WC.allFinite()) return Change::kBadPoint;
   if (size_ == static_cast<int>(entries_.size())) return Change::kFull;
   entries_[static_cast<std::size_t>(size_)] = {
-      .id = id,
-      .p_WC = contact->p_WC,
-      .L_static = top().L_static + (contact->p_WC - top().p_WC).norm()};
+      .id = id, .p_WC = p_WC, .L_static = top().L_static + (p_WC - top().p_WC).norm()};
   ++size_;
   return Change::kPushed;
 }

@@ -47,13 +47,19 @@ class ContactStack {
   /// else pushes it with its position in `plan`.
   [[nodiscard]] Change select(int id, const MissionPlan& plan) noexcept;
 
+  /// Puts a contact at p_WC [m] on top: kPushed, kFull or kBadPoint.
+  [[nodiscard]] Change push(int id, const Eigen::Vector3d& p_WC) noexcept;
+
   [[nodiscard]] Anchor anchor() const noexcept;
   [[nodiscard]] int activeId() const noexcept { return top().id; }
 
   /// Number of contacts besides the reel outlet.
   [[nodiscard]] int contactCount() const noexcept { return size_ - 1; }
 
-  /// C_i in W, 0 <= i <= contactCount(); C0 is the reel outlet, W's origin.
+  /// Id of C_i, 0 <= i <= contactCount(); C0 is the reel outlet.
+  [[nodiscard]] int id(int i) const noexcept { return entries_[static_cast<std::size_t>(i)].id; }
+
+  /// C_i in W, 0 <= i <= contactCount(); C0 is W's origin.
   [[nodiscard]] const Eigen::Vector3d& point(int i) const noexcept {
     return entries_[static_cast<std::size_t>(i)].p_WC;
   }

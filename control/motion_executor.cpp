@@ -21,18 +21,16 @@ MotionExecutor::MotionExecutor(const ExecutorConfig& config, const PoleConfig& p
 // Requests ---------------------------------------------------------------------------------------
 
 bool MotionExecutor::start(const MissionPlan& plan, const Estimate& estimate) noexcept {
-  if (!begin(Route::along(plan), estimate)) return false;
-  p_WFlownStart_ = estimate.p_WD;
-  return true;
+  return begin(Route::along(plan), estimate);
 }
 
 bool MotionExecutor::goTo(const PointTarget& target, const Estimate& estimate) noexcept {
   return target.p_WD.allFinite() && begin(Route::to(target), estimate);
 }
 
-bool MotionExecutor::goBack(const Estimate& estimate) noexcept {
-  return flown_plan_ != nullptr &&
-         begin(Route::back(*flown_plan_, flown_, p_WFlownStart_), estimate);
+bool MotionExecutor::goBack(const FlownPath& path, double distance, double speed,
+                            const Estimate& estimate) noexcept {
+  return begin(Route::back(path, estimate.p_WD, distance, speed), estimate);
 }
 
 bool MotionExecutor::pause() noexcept {
@@ -47,7 +45,7 @@ bool MotionExecutor::resume() noexcept {
   if (was_holding_) {
     holdAt(MissionState::kHolding, leg_.p_WD);
   } else {
-    beginLeg(index_, p_WD_);
+    flyLegFrom(p_WD_);
   }
   return true;
 }
@@ -79,13 +77,8 @@ bool MotionExecutor::begin(const Route& route, const Estimate& estimate) noexcep
   route_ = route;
   p_WD_ = estimate.p_WD;
   status_ = ExecutorStatus{};
-  if (const MissionPlan* plan = route.plan(); plan != nullptr) {
-    flown_plan_ = plan;
-    status_.mission_hash = plan->hash;
-    status_.waypoint_count = plan->waypoint_count;
-  } else {
-    status_.waypoint_count = 1;
-  }
+  status_.waypoint_count = route.count();
+  if (route.plan() != nullptr) status_.mission_hash = route.plan()->hash;
   beginLeg(0, p_WD_);
   describe(estimate);
   return true;
@@ -93,7 +86,16 @@ bool MotionExecutor::begin(const Route& route, const Estimate& estimate) noexcep
 
 void MotionExecutor::beginLeg(int index, Eigen::Vector3d p_WS) noexcept {
   index_ = index;
+  const ContactStack::Change change = route_.select(index, contacts_);
   leg_ = route_.leg(index);
+  flyLegFrom(p_WS);
+  if (change == ContactStack::Change::kUnknownId || change == ContactStack::Change::kFull ||
+      change == ContactStack::Change::kBadPoint) {
+    fail(MissionFailure::kBadContact);
+  }
+}
+
+void MotionExecutor::flyLegFrom(const Eigen::Vector3d& p_WS) noexcept {
   held_ = Duration(0);
   since_best_ = Duration(0);
   unreachable_for_ = Duration(0);
@@ -104,14 +106,6 @@ void MotionExecutor::beginLeg(int index, Eigen::Vector3d p_WS) noexcept {
   status_.time_on_waypoint = Duration(0);
   best_ = (leg_.p_WD - p_WD_).norm();
 
-  if (route_.plan() != nullptr) {
-    flown_ = route_.outwardLeg(index);
-    const ContactStack::Change change = contacts_.select(*leg_.contact, *route_.plan());
-    if (change == ContactStack::Change::kUnknownId || change == ContactStack::Change::kFull ||
-        change == ContactStack::Change::kBadPoint) {
-      return fail(MissionFailure::kBadContact);
-    }
-  }
   // Written so that a target that is not finite fails, too.
   if (!(contacts_.effective(leg_.p_WD).L_total <= limits_.tether_length_m)) {
     fail(MissionFailure::kUnreachable);

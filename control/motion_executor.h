@@ -18,6 +18,7 @@
 #include "common/time.h"
 #include "control/contact_stack.h"
 #include "control/controller.h"
+#include "control/flown_path.h"
 #include "control/look_at.h"
 #include "control/pole.h"
 #include "control/route.h"
@@ -118,7 +119,7 @@ struct ExecutorStatus {
   MissionState state{MissionState::kIdle};
   MissionFailure failure{MissionFailure::kNone};
   std::uint64_t mission_hash{0};  ///< 0: no mission, or a single point.
-  int waypoint{0};                ///< Index of the present target in the plan.
+  int waypoint{0};                ///< Index of the present target in plan or flown path.
   int waypoint_count{0};
   Eigen::Vector3d p_WTarget{Eigen::Vector3d::Zero()};        ///< Present waypoint [m].
   Eigen::Vector3d p_WSegmentStart{Eigen::Vector3d::Zero()};  ///< [m]
@@ -149,10 +150,11 @@ class MotionExecutor {
   /// point is not finite.
   bool goTo(const PointTarget& target, const Estimate& estimate) noexcept;
 
-  /// Retraces the mission last started, back to where it began. Allowed also after goTo(), abort()
-  /// or failure; the plan must still be there. False if there is nothing to retrace or no usable
-  /// estimate.
-  bool goBack(const Estimate& estimate) noexcept;
+  /// Goes back along the flown path, `distance` [m] or all the way, at `speed` [m/s]. While a leg is
+  /// flown the path may be cut after the leg's end (status().waypoint), not before it. False, and
+  /// nothing changed, if there is no path or no usable estimate.
+  bool goBack(const FlownPath& path, double distance, double speed,
+              const Estimate& estimate) noexcept;
 
   /// Holds where the drone was last seen until resume(). False unless running or holding.
   bool pause() noexcept;
@@ -175,6 +177,7 @@ class MotionExecutor {
  private:
   bool begin(const Route& route, const Estimate& estimate) noexcept;
   void beginLeg(int index, Eigen::Vector3d p_WS) noexcept;
+  void flyLegFrom(const Eigen::Vector3d& p_WS) noexcept;
   void advance() noexcept;
   void holdAt(MissionState state, const Eigen::Vector3d& p_WD) noexcept;
   void fail(MissionFailure failure) noexcept;
@@ -201,10 +204,6 @@ class MotionExecutor {
   Duration since_best_{0};
   Duration unreachable_for_{0};
   bool was_holding_{false};  ///< Paused out of a hold.
-
-  const MissionPlan* flown_plan_{nullptr};                  ///< Mission that goBack() retraces;
-  int flown_{0};                                            ///< its leg that was under way last;
-  Eigen::Vector3d p_WFlownStart_{Eigen::Vector3d::Zero()};  ///< where it began.
 
   ExecutorStatus status_;
 };

@@ -11,13 +11,25 @@ Route Route::along(const MissionPlan& plan) noexcept {
   return out;
 }
 
-Route Route::back(const MissionPlan& plan, int from, const Eigen::Vector3d& p_WStart) noexcept {
+Route Route::back(const FlownPath& path, const Eigen::Vector3d& p_WD, double distance,
+                  double speed) noexcept {
   Route out;
-  out.plan_ = &plan;
-  out.backwards_ = true;
-  out.point_.p_WD = p_WStart;
-  // From the leg towards `from`: the waypoints from - 1 … 0, then the start.
-  out.count_ = std::clamp(from, 0, std::max(0, plan.waypoint_count - 1)) + 1;
+  if (!path.known()) return out;
+  out.path_ = &path;
+  out.from_ = path.count() - 1;
+  int last = out.from_;
+  Eigen::Vector3d start = p_WD;
+  double left = distance;
+  double length = (path.point(last) - start).norm();
+  while (length < left && last > 0) {
+    left -= length;
+    start = path.point(last--);
+    length = (path.point(last) - start).norm();
+  }
+  out.point_.p_WD = path.point(last);
+  out.point_.speed = speed;
+  if (length > left) out.point_.p_WD = start + (left / length) * (path.point(last) - start);
+  out.count_ = out.from_ - last + 1;
   return out;
 }
 
@@ -29,10 +41,7 @@ Route Route::to(const PointTarget& target) noexcept {
 }
 
 Leg Route::leg(int i) const noexcept {
-  if (plan_ == nullptr) {
-    return {.p_WD = point_.p_WD, .p_WL = point_.p_WL, .speed = point_.speed};
-  }
-  if (!backwards_) {
+  if (plan_ != nullptr) {
     const Waypoint& w = plan_->waypoints[static_cast<std::size_t>(i)];
     return {.p_WD = w.p_WD,
             .contact = w.contact,
@@ -41,11 +50,19 @@ Leg Route::leg(int i) const noexcept {
             .hold = w.hold,
             .waypoint = i};
   }
-  const int flown = outwardLeg(i);
-  const Waypoint& w = plan_->waypoints[static_cast<std::size_t>(flown)];
-  Leg out{.contact = w.contact, .speed = w.speed, .waypoint = std::max(0, flown - 1)};
-  out.p_WD = flown > 0 ? plan_->waypoints[static_cast<std::size_t>(flown - 1)].p_WD : point_.p_WD;
+  Leg out{.p_WD = point_.p_WD, .p_WL = point_.p_WL, .speed = point_.speed};
+  if (path_ == nullptr) return out;
+  out.waypoint = pointOf(i);
+  if (i + 1 < count_) out.p_WD = path_->point(out.waypoint);
+  if (i > 0) out.contact = path_->contact(out.waypoint + 1);
   return out;
+}
+
+ContactStack::Change Route::select(int i, ContactStack& contacts) const noexcept {
+  if (plan_ != nullptr)
+    return contacts.select(plan_->waypoints[static_cast<std::size_t>(i)].contact, *plan_);
+  if (path_ != nullptr && i > 0) return path_->restore(pointOf(i) + 1, contacts);
+  return ContactStack::Change::kNone;
 }
 
 }  // namespace tautline

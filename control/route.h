@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What the motion executor flies: a mission along its waypoints, the flown part of one back again,
+/// What the motion executor flies: a mission along its waypoints, the way back over what was flown,
 /// or a single point. One mechanism for all, so that take-off, hover, return and landing share the
 /// mission's checks and time-outs.
 
@@ -10,6 +10,8 @@
 #include <Eigen/Core>
 
 #include "common/mission_plan.h"
+#include "control/contact_stack.h"
+#include "control/flown_path.h"
 
 namespace tautline {
 
@@ -20,7 +22,7 @@ struct Leg {
   std::optional<Eigen::Vector3d> p_WL{};  ///< Point to look at [m], in W.
   double speed{0.0};                      ///< [m/s]; 0 = the executor's default.
   double hold{0.0};                       ///< Stay after arrival [s].
-  int waypoint{0};                        ///< Index in the plan, for telemetry.
+  int waypoint{0};  ///< Index of its end in the plan or in the flown path; for a point 0.
 };
 
 /// A single target: take-off height, hover point above home, landing, or where the drone is now.
@@ -30,8 +32,9 @@ struct PointTarget {
   std::optional<Eigen::Vector3d> p_WL{};          ///< Point to look at [m], in W.
 };
 
-/// Holds the plan by pointer: it must stay as it is for as long as the route is in use.
-/// Real-time safe throughout: no allocation, no locks, no exceptions.
+/// Holds plan and flown path by pointer: the plan must stay as it is for as long as the route is in
+/// use, the flown path up to the end of the present leg. Real-time safe throughout: no allocation,
+/// no locks, no exceptions.
 class Route {
  public:
   /// No legs.
@@ -40,11 +43,11 @@ class Route {
   /// Every waypoint of `plan` in order.
   [[nodiscard]] static Route along(const MissionPlan& plan) noexcept;
 
-  /// Back from the leg towards waypoint `from` over the waypoints before it to `p_WStart`, where
-  /// the drone was before waypoint 0. Each leg has the contact it was flown out with, so that
-  /// contacts are undone in reverse order. Without looks and holds.
-  [[nodiscard]] static Route back(const MissionPlan& plan, int from,
-                                  const Eigen::Vector3d& p_WStart) noexcept;
+  /// From p_WD straight to the last point of `path` and back along it, `distance` [m] in all or to
+  /// its beginning. Each leg has the contacts it was flown out with, so that they are undone in
+  /// reverse order. No legs if there is no path.
+  [[nodiscard]] static Route back(const FlownPath& path, const Eigen::Vector3d& p_WD,
+                                  double distance, double speed) noexcept;
 
   /// One point; the contact stack stays as it is.
   [[nodiscard]] static Route to(const PointTarget& target) noexcept;
@@ -54,17 +57,21 @@ class Route {
   /// 0 <= i < count().
   [[nodiscard]] Leg leg(int i) const noexcept;
 
-  /// The plan's own leg that leg i flies or undoes; 0 for a single point. 0 <= i < count().
-  [[nodiscard]] int outwardLeg(int i) const noexcept { return backwards_ ? count_ - 1 - i : i; }
+  /// Makes `contacts` what leg i is flown with. 0 <= i < count().
+  [[nodiscard]] ContactStack::Change select(int i, ContactStack& contacts) const noexcept;
 
   /// The plan behind the legs, or nullptr.
   [[nodiscard]] const MissionPlan* plan() const noexcept { return plan_; }
 
  private:
+  /// Index in the flown path of the point that leg i of the way back goes to.
+  [[nodiscard]] int pointOf(int i) const noexcept { return from_ - i; }
+
   const MissionPlan* plan_{nullptr};
+  const FlownPath* path_{nullptr};
   int count_{0};
-  bool backwards_{false};
-  PointTarget point_{};  ///< The single target, or the start that the way back ends at.
+  int from_{0};          ///< Last point of the flown path when the way back began.
+  PointTarget point_{};  ///< The single target, or the end of the way back.
 };
 
 }  // namespace tautline

@@ -225,7 +225,8 @@ void FotokiteDevice::sendStartLine(Time now) noexcept {
 void FotokiteDevice::sendAction(Time now, VehicleAction action) noexcept {
   const bool changed = action != sent_action_;
   sent_action_ = action;
-  if (action == VehicleAction::kNone) return;
+  // It has no command for a landing: rates bring it down.
+  if (action == VehicleAction::kNone || action == VehicleAction::kLand) return;
   if (action == VehicleAction::kTakeoff && !started()) return;
   if (!changed && !action_pace_.due(now)) return;
   send(fotokite::formatLine(action == VehicleAction::kTakeoff ? fotokite::kTakeoffCommand

@@ -69,10 +69,23 @@ bus::Rates ratesOf(const VehicleCommand& c) noexcept {
   return {c.length_rate, c.elevation_rate, c.azimuth_rate, c.yaw_rate};
 }
 
+BusMode modeOf(VehicleAction action) noexcept {
+  switch (action) {
+    case VehicleAction::kTakeoff:
+      return BusMode::kTakeoff;
+    case VehicleAction::kLand:
+      return BusMode::kLand;
+    case VehicleAction::kMotorStop:
+      return BusMode::kStop;
+    case VehicleAction::kNone:
+      break;
+  }
+  return BusMode::kArmed;
+}
+
 bus::ModeCommand modeOf(const VehicleCommand& c) noexcept {
   if (!c.engaged) return {};
-  return {c.action == VehicleAction::kTakeoff ? BusMode::kTakeoff : BusMode::kArmed,
-          c.reel_controller, c.gimbal_pitch_rate, 0.0};
+  return {modeOf(c.action), c.reel_controller, c.gimbal_pitch_rate, 0.0};
 }
 
 }  // namespace

@@ -65,7 +65,8 @@ enum class BusMode : std::uint8_t {
   kDisarmed = 0,  ///< Nothing moves; rates are not obeyed.
   kArmed = 1,     ///< Rates are obeyed.
   kTakeoff = 2,   ///< Start the motors and lift off; as kArmed once in the air.
-  kLand = 3,      ///< Come down by itself. Not sent by the station: it flies its landings itself.
+  kLand = 3,      ///< Come down where it is, by itself, and stop the motors there; rates are not
+                  ///< obeyed, the reel holds.
   kStop = 4,      ///< Motors off at once.
 };
 inline constexpr std::array<EnumName<BusMode>, 5> kBusModeNames{{{BusMode::kDisarmed, "disarmed"},

@@ -1,5 +1,7 @@
 #include "app/station/guidance.h"
 
+#include <limits>
+
 #include "app/station/station_config.h"
 
 namespace tautline {
@@ -11,49 +13,57 @@ constexpr double kGroundHeight = 0.3;  // [m] no lower for a while and below thi
 constexpr Duration kNoLowerFor = std::chrono::seconds(2);
 constexpr int kGroundedSamples = 2;
 constexpr double kSmallestDescent = 0.01;  // [m]
+constexpr double kAllTheWay = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
 Guidance::Guidance(const GuidanceConfig& config, const ExecutorConfig& executor,
                    const PoleConfig& pole, const VehicleLimits& limits) noexcept
-    : config_(config), executor_(executor, pole, limits, contacts_) {}
+    : config_(config), limits_(limits), executor_(executor, pole, limits, contacts_) {}
 
 GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
-  mode_ = in.mode;
-  if (in.entered) enter(in);
+  if (in.entered) {
+    gave_up_ = in.mode == Mode::kFailsafe && routeFailed();
+    enter(in);
+  }
   watchVehicle(in);
 
   GuidanceOutput out;
+  VehicleCommand& command = out.command;
   switch (in.mode) {
     case Mode::kStandby:
     case Mode::kArmed:
       return out;
     case Mode::kEstop:
-      out.engaged = true;
-      out.action = paced(VehicleAction::kMotorStop, in.now);
+      command.engaged = true;
+      command.action = paced(VehicleAction::kMotorStop, in.now);
       return out;
     case Mode::kTakeoff:
-      if (!has_flown_) out.action = paced(VehicleAction::kTakeoff, in.now);
+      if (!has_flown_) command.action = paced(VehicleAction::kTakeoff, in.now);
       break;
     case Mode::kLand:
-      if (landing_ == Landing::kStopMotors) out.action = paced(VehicleAction::kMotorStop, in.now);
+      if (landing_ == Landing::kStopMotors)
+        command.action = paced(VehicleAction::kMotorStop, in.now);
       break;
     default:
       break;
   }
-  out.engaged = true;
+  command.engaged = true;
   // Once it has flown it counts as airborne until it says that it stands: a fault in the air is no
   // touch-down.
-  out.reel_controller = has_flown_;
+  command.reel_controller = has_flown_;
   if (!has_flown_) return out;
 
-  fly(in);
-  ExecutorInput executor_in;
-  executor_in.estimate = in.estimate;
-  if (in.sensors->attitude.valid) executor_in.R_WB = in.sensors->attitude.value.R_WB;
-  if (in.sensors->gimbal.valid) executor_in.gimbal_pitch = in.sensors->gimbal.value.pitch;
-  out.route = executor_.update(in.dt, executor_in);
+  if (!flyByRates(in, command)) {
+    fly(in);
+    ExecutorInput executor_in;
+    executor_in.estimate = in.estimate;
+    if (in.sensors->attitude.valid) executor_in.R_WB = in.sensors->attitude.value.R_WB;
+    if (in.sensors->gimbal.valid) executor_in.gimbal_pitch = in.sensors->gimbal.value.pitch;
+    out.route = executor_.update(in.dt, executor_in);
+  }
   if (in.mode == Mode::kAuto && under_way_) mission_ = executor_.status();
+  recordFlight(in);
   return out;
 }
 
@@ -68,15 +78,50 @@ void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
 }
 
 void Guidance::enter(const GuidanceInput& in) noexcept {
+  mode_ = in.mode;
   under_way_ = false;
   last_action_.reset();
   executor_.abort();
-  if (in.mode == Mode::kArmed || in.mode == Mode::kStandby) {
-    contacts_.clear();
-    has_flown_ = false;
+  switch (in.mode) {
+    case Mode::kStandby:
+    case Mode::kArmed:
+      contacts_.clear();
+      path_.clear();
+      has_flown_ = false;
+      break;
+    case Mode::kTakeoff:
+      path_.begin(aboveHome(config_.takeoff_height_m));
+      break;
+    case Mode::kLand:
+      landing_ = contacts_.contactCount() > 0 ? Landing::kRetrace : Landing::kApproach;
+      break;
+    case Mode::kDescend:
+      landing_ = Landing::kDescend;
+      descent_.begin(p_AD_, (contacts_.anchor().p_WA + p_AD_ - config_.home_position_m).y());
+      break;
+    default:
+      break;
   }
-  if (in.mode == Mode::kLand)
-    landing_ = contacts_.contactCount() > 0 ? Landing::kRetrace : Landing::kApproach;
+}
+
+/// What is flown without the executor; false: everything else.
+bool Guidance::flyByRates(const GuidanceInput& in, VehicleCommand& command) noexcept {
+  if (in.mode == Mode::kDescend) {
+    descend(in, command);
+    return true;
+  }
+  if (in.mode == Mode::kFailsafe && in.conditions.has(Condition::kTetherSlack)) {
+    command.length_rate = -config_.slack_reel_in_mps;
+    return true;
+  }
+  if (in.mode != Mode::kTeleop || !in.teleop) return false;
+  command.length_rate = in.teleop->length;
+  command.elevation_rate = in.teleop->elevation;
+  command.azimuth_rate = in.teleop->azimuth;
+  command.yaw_rate = in.teleop->yaw;
+  command.gimbal_pitch_rate = in.teleop->gimbal_pitch;
+  under_way_ = false;  // where the sticks go silent a new hover begins
+  return true;
 }
 
 /// Starts what the mode flies as soon as there is an estimate to start from, and moves a landing
@@ -88,11 +133,17 @@ void Guidance::fly(const GuidanceInput& in) noexcept {
   } else if (!under_way_) {
     switch (in.mode) {
       case Mode::kTakeoff:
-        under_way_ = goTo(config_.home_position_m + Eigen::Vector3d(0, config_.takeoff_height_m, 0),
-                          config_.travel_speed_mps, in.estimate);
+        under_way_ =
+            goTo(aboveHome(config_.takeoff_height_m), config_.travel_speed_mps, in.estimate);
         break;
       case Mode::kAuto:
         under_way_ = in.plan != nullptr && executor_.start(*in.plan, in.estimate);
+        break;
+      case Mode::kBackUp:
+        under_way_ = goBack(config_.back_up_m, in.estimate);
+        break;
+      case Mode::kReturn:
+        under_way_ = goBack(kAllTheWay, in.estimate);
         break;
       default:
         under_way_ = goTo(in.estimate.p_WD, config_.travel_speed_mps, in.estimate);
@@ -100,18 +151,15 @@ void Guidance::fly(const GuidanceInput& in) noexcept {
   }
 }
 
-/// Retrace the contacts, go above home, descend, stop the motors. A step that fails is tried again
-/// from where the drone is: to give up in the air is no landing.
+/// Retrace the way flown if there are contacts to undo, go above home, descend, stop the motors. A
+/// step that fails is tried again from where the drone is: to give up in the air is no landing.
 void Guidance::land(const GuidanceInput& in) noexcept {
-  const Eigen::Vector3d above =
-      config_.home_position_m + Eigen::Vector3d(0, config_.approach_height_m, 0);
-  const Eigen::Vector3d below = config_.home_position_m - Eigen::Vector3d(0, kBelowGround, 0);
   const MissionState state = executor_.status().state;
   const bool arrived = under_way_ && state == MissionState::kCompleted;
   if (under_way_ && state == MissionState::kFailed) under_way_ = false;
 
   if (landing_ == Landing::kRetrace) {
-    if (!under_way_) under_way_ = executor_.goBack(in.estimate);
+    if (!under_way_) under_way_ = goBack(kAllTheWay, in.estimate);
     if (!under_way_ || arrived) {
       landing_ = Landing::kApproach;
       under_way_ = false;
@@ -128,9 +176,27 @@ void Guidance::land(const GuidanceInput& in) noexcept {
 
   if (under_way_) return;
   if (landing_ == Landing::kApproach)
-    under_way_ = goTo(above, config_.travel_speed_mps, in.estimate);
+    under_way_ = goTo(aboveHome(config_.approach_height_m), config_.travel_speed_mps, in.estimate);
   if (landing_ == Landing::kDescend)
-    under_way_ = goTo(below, config_.descent_speed_mps, in.estimate);
+    under_way_ = goTo(aboveHome(-kBelowGround), config_.descent_speed_mps, in.estimate);
+}
+
+/// A vehicle that comes down by itself stops its motors by itself; any other is brought down by the
+/// rates.
+void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcept {
+  const TetherAngles& angles = in.sensors->angles.value;
+  const bool fresh = in.sensors->angles.valid && !in.conditions.has(Condition::kAnglesStale);
+  const RateCommand rates = descent_.update(in.dt, config_.descent_speed_mps, limits_,
+                                            fresh ? angles.altitude : std::nullopt);
+  if (in.vehicle != VehiclePhase::kLanding && descent_.onGround())
+    landing_ = Landing::kStopMotors;
+  if (landing_ == Landing::kStopMotors) {
+    command.action = paced(VehicleAction::kMotorStop, in.now);
+    return;
+  }
+  command.action = VehicleAction::kLand;
+  command.length_rate = rates.length_rate;
+  command.elevation_rate = rates.elevation_rate;
 }
 
 bool Guidance::onGround(const GuidanceInput& in) noexcept {
@@ -150,6 +216,34 @@ bool Guidance::goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& e
   return executor_.goTo(target, estimate);
 }
 
+bool Guidance::goBack(double distance, const Estimate& estimate) noexcept {
+  return executor_.goBack(path_, distance, config_.travel_speed_mps, estimate);
+}
+
+bool Guidance::goingBack() const noexcept {
+  const bool back = isIn(mode_, maskOf({Mode::kBackUp, Mode::kReturn})) ||
+                    (mode_ == Mode::kLand && landing_ == Landing::kRetrace);
+  return back && under_way_;
+}
+
+/// Where it is flown to is remembered, and forgotten as it is flown back. A take-off is one straight
+/// piece up to where the way home ends.
+void Guidance::recordFlight(const GuidanceInput& in) noexcept {
+  constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
+                                        Condition::kTetherBroken};
+  if (!in.estimate.usable() || isIn(in.mode, maskOf({Mode::kTakeoff, Mode::kDescend}))) return;
+  p_AD_ = in.estimate.p_WD - contacts_.anchor().p_WA;
+  if (goingBack()) {
+    path_.cutAfter(executor_.status().waypoint);
+  } else {
+    path_.record(in.estimate.p_WD, contacts_, !in.conditions.any(kTetherUnknown));
+  }
+}
+
+Eigen::Vector3d Guidance::aboveHome(double height) const noexcept {
+  return config_.home_position_m + Eigen::Vector3d(0, height, 0);
+}
+
 VehicleAction Guidance::paced(VehicleAction action, Time now) noexcept {
   if (last_action_ && now - *last_action_ < fromSeconds(config_.action_period_s))
     return VehicleAction::kNone;
@@ -165,18 +259,23 @@ bool Guidance::startsWithPresentTether(const MissionPlan& plan) const noexcept {
   return contact == nullptr || (contact->p_WC - contacts_.anchor().p_WA).norm() < kSamePoint;
 }
 
+bool Guidance::routeFailed() const noexcept {
+  return isIn(mode_, maskOf({Mode::kAuto, Mode::kBackUp, Mode::kReturn})) && under_way_ &&
+         executor_.status().state == MissionState::kFailed;
+}
+
 ConditionSet Guidance::conditions() const noexcept {
-  const MissionState state = executor_.status().state;
+  const bool completed = under_way_ && executor_.status().state == MissionState::kCompleted;
+  const bool back = isIn(mode_, maskOf({Mode::kBackUp, Mode::kReturn}));
   ConditionSet set;
-  set.set(Condition::kAtTarget, mode_ == Mode::kTakeoff && under_way_ &&
-                                    executor_.status().distance < config_.takeoff_radius_m);
+  set.set(Condition::kAtTarget,
+          (back && completed) || (mode_ == Mode::kTakeoff && under_way_ &&
+                                  executor_.status().distance < config_.takeoff_radius_m));
   const bool stands = grounded_samples_ >= kGroundedSamples;
   // A take-off that never left the ground ends there too.
   set.set(Condition::kTouchdown, stands && (has_flown_ || mode_ == Mode::kLand));
-  set.set(Condition::kMissionDone,
-          mode_ == Mode::kAuto && under_way_ && state == MissionState::kCompleted);
-  set.set(Condition::kMissionFailed,
-          mode_ == Mode::kAuto && under_way_ && state == MissionState::kFailed);
+  set.set(Condition::kMissionDone, mode_ == Mode::kAuto && completed);
+  set.set(Condition::kMissionFailed, gave_up_ || routeFailed() || (back && !path_.known()));
   return set;
 }
 

@@ -1,17 +1,22 @@
 #pragma once
 
 /// @file
-/// What to fly in each mode: take-off, hover, mission, landing. All of it goes through the one
-/// motion executor; guidance chooses its route and tells the supervisor how far it is.
+/// What to fly in each mode: take-off, hover, mission, ways back, landing. All of it goes through
+/// the one motion executor; guidance chooses its route and tells the supervisor how far it is. Only
+/// what must not or cannot know where the drone is goes past it, as plain rates: the operator's
+/// sticks, a slack tether's reel-in, the descent without localization.
 
 #include <optional>
 
 #include <Eigen/Core>
 
+#include "app/station/teleop.h"
 #include "common/estimate.h"
 #include "common/mission_plan.h"
 #include "common/vehicle.h"
 #include "control/contact_stack.h"
+#include "control/descent.h"
+#include "control/flown_path.h"
 #include "control/motion_executor.h"
 #include "supervision/supervisor.h"
 
@@ -28,13 +33,13 @@ struct GuidanceInput {
   VehiclePhase vehicle{VehiclePhase::kUnknown};  ///< What the vehicle says it is doing.
   const SensorFrame* sensors{};                  ///< For look-at.
   const MissionPlan* plan{};                     ///< For AUTO; null: none.
+  ConditionSet conditions;                       ///< As of this cycle.
+  std::optional<TeleopRates> teleop{};           ///< For TELEOP; only if fresh.
 };
 
 struct GuidanceOutput {
-  bool engaged{false};
-  ExecutorOutput route;  ///< Not active: stand still.
-  VehicleAction action{VehicleAction::kNone};
-  bool reel_controller{false};
+  VehicleCommand command;  ///< Complete, but for the rates of an active route.
+  ExecutorOutput route;
 };
 
 /// Real-time safe: no allocation, no locks, no exceptions.
@@ -54,6 +59,9 @@ class Guidance {
   /// beginning would put the estimate on a wrong anchor.
   [[nodiscard]] bool startsWithPresentTether(const MissionPlan& plan) const noexcept;
 
+  /// Whether a way back is known: the flight was seen from its take-off on.
+  [[nodiscard]] bool knowsWayBack() const noexcept { return path_.known(); }
+
   [[nodiscard]] const ContactStack& contacts() const noexcept { return contacts_; }
   /// Of the mission flown last, also after the mode has changed: a completed mission stays
   /// completed.
@@ -64,24 +72,36 @@ class Guidance {
 
   void enter(const GuidanceInput& in) noexcept;
   void fly(const GuidanceInput& in) noexcept;
+  [[nodiscard]] bool flyByRates(const GuidanceInput& in, VehicleCommand& command) noexcept;
   void land(const GuidanceInput& in) noexcept;
+  void descend(const GuidanceInput& in, VehicleCommand& command) noexcept;
   bool goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& estimate) noexcept;
+  bool goBack(double distance, const Estimate& estimate) noexcept;
+  void recordFlight(const GuidanceInput& in) noexcept;
+  [[nodiscard]] bool goingBack() const noexcept;
+  [[nodiscard]] bool routeFailed() const noexcept;
+  [[nodiscard]] Eigen::Vector3d aboveHome(double height) const noexcept;
   [[nodiscard]] bool onGround(const GuidanceInput& in) noexcept;
   void watchVehicle(const GuidanceInput& in) noexcept;
   [[nodiscard]] VehicleAction paced(VehicleAction action, Time now) noexcept;
 
   const GuidanceConfig& config_;
+  VehicleLimits limits_;
   ContactStack contacts_;
+  FlownPath path_;
   MotionExecutor executor_;
   ExecutorStatus mission_;
   Mode mode_{Mode::kStandby};
   bool under_way_{false};    ///< The mode's route has been started.
+  bool gave_up_{false};      ///< The mode began because the route before it failed.
   bool has_flown_{false};    ///< Since arming.
   int grounded_samples_{0};  ///< Vehicle status samples in a row that say that it stands.
   std::uint32_t vehicle_sequence_{0};
   Landing landing_{Landing::kApproach};
   double lowest_{0.0};   ///< Least height above home while descending [m].
   Time lowest_since_{};  ///< When that was reached.
+  Descent descent_;
+  Eigen::Vector3d p_AD_{Eigen::Vector3d::Zero()};  ///< Last that could be trusted [m].
   std::optional<Time> last_action_;
 };
 

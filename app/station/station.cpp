@@ -78,7 +78,8 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
                                                     .estimate = out_.estimate,
                                                     .vehicle = in.sensors.vehicle.value.phase,
                                                     .sensors = &in.sensors,
-                                                    .plan = missions_.active()});
+                                                    .plan = missions_.active(),
+                                                    .conditions = out_.conditions});
   const VehicleCommand wanted = control(dt, guidance);
   const VehicleCommand gated = gate_.apply(dt, wanted).command;
   out_.command = override(gated);
@@ -172,13 +173,10 @@ void Station::enterMode(Time now) noexcept {
   }
 }
 
-/// Rates for the route, by the configured law; standing still where there is none or the law cannot
-/// act.
+/// Rates for the route, by the configured law; where there is none or the law cannot act, those of
+/// guidance.
 VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noexcept {
-  VehicleCommand command;
-  command.engaged = guidance.engaged;
-  command.action = guidance.action;
-  command.reel_controller = guidance.reel_controller;
+  VehicleCommand command = guidance.command;
   if (!guidance.route.active) return command;
   const RateCommand rates = controller_->update(dt, guidance.route.control);
   if (!rates.ok) return command;
@@ -190,14 +188,15 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   return command;
 }
 
-/// The supervisor's last word: no rates without fresh tether sensors, link and localization; none
-/// on the ground.
+/// The supervisor's last word: no rates without fresh tether sensors, link and localization, but to
+/// come down without them; none on the ground.
 VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
   constexpr ConditionSet kStandStill{Condition::kReelStale, Condition::kAnglesStale,
                                      Condition::kLinkLost, Condition::kVehicleStale,
                                      Condition::kLocalizationLost};
   const Mode mode = out_.supervision.mode;
-  if (isIn(mode, kFlyingModes) && !out_.conditions.any(kStandStill)) return gated;
+  const bool sees = !out_.conditions.any(kStandStill) || mode == Mode::kDescend;
+  if (isIn(mode, kFlyingModes) && sees) return gated;
   gate_.reset();
   VehicleCommand still;
   still.engaged = gated.engaged;

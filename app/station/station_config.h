@@ -29,7 +29,7 @@
 
 namespace tautline {
 
-/// Take-off and landing.
+/// Take-off, ways back and landing.
 struct GuidanceConfig {
   Eigen::Vector3d home_position_m{0.7, -0.2, 0.4};
   double takeoff_height_m{0.9};
@@ -39,6 +39,8 @@ struct GuidanceConfig {
   double descent_speed_mps{0.15};
   double touchdown_height_m{0.06};
   double action_period_s{1.0};
+  double back_up_m{1.0};
+  double slack_reel_in_mps{0.05};
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -58,6 +60,9 @@ struct GuidanceConfig {
             "motors stop below this height above home");
     v.field("action_period_s", action_period_s, Range{0.1, 10},
             "take-off and motor stop are repeated this often");
+    v.field("back_up_m", back_up_m, Range{0.1, 100}, "way back along the flown path in BACKUP");
+    v.field("slack_reel_in_mps", slack_reel_in_mps, Range{0.0, 1},
+            "reel-in in FAILSAFE while the tether is slack");
   }
 };
 

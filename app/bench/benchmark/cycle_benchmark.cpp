@@ -145,10 +145,10 @@ class Shadow {
                                    .estimate = estimate,
                                    .vehicle = in.sensors.vehicle.value.phase,
                                    .sensors = &in.sensors,
-                                   .plan = &plan_});
+                                   .plan = &plan_,
+                                   .conditions = out.conditions});
     });
-    VehicleCommand wanted;
-    wanted.engaged = guidance.engaged;
+    VehicleCommand wanted = guidance.command;
     if (guidance.route.active) {
       RateCommand rates;
       stages[Stages::kControl].time(

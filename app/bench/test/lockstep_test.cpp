@@ -5,38 +5,21 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "app/bench/log_sink.h"
 #include "app/bench/replay.h"
+#include "app/bench/test/bench_flight.h"
 #include "common/error.h"
 #include "common/testing/malloc_guard.h"
-#include "common/toml/config_file.h"
 
 namespace tautline::bench {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-const fs::path kConfig = fs::path(TAUTLINE_SOURCE_DIR) / "config";
-
-LockstepConfig benchConfig(const std::string& scene, std::uint64_t seed) {
-  LockstepConfig config;
-  config.station = loadConfig<StationConfig>(kConfig / "station.toml");
-  config.sim = loadConfig<sim::SimConfig>(kConfig / "sim.toml");
-  config.world = sceneInWorld(readScene(kConfig / "scenes" / (scene + ".scene.toml")));
-  config.seed = seed;
-  return config;
-}
-
-Mission mission(const std::string& name) {
-  return readMission(kConfig / "missions" / (name + ".mission.toml"));
-}
 
 fs::path temporary(const std::string& name) {
   return fs::path(::testing::TempDir()) / ("tautline_lockstep_" + name);
@@ -49,55 +32,17 @@ std::string bytesOf(const fs::path& path) {
   return out.str();
 }
 
-/// Brings a bench into the middle of a mission.
-struct Airborne {
-  std::unique_ptr<Lockstep> bench;
+/// In the middle of a mission.
+struct Airborne : BenchFlight {
   Mission plan = mission("square");
-  std::int32_t sequence{0};
 
-  explicit Airborne(TelemetrySink* sink = nullptr) {
-    bench = std::make_unique<Lockstep>(benchConfig("open", 3), sink);
-    for (int i = 0; i < 300; ++i) bench->step();
-    ask(Request::kArm);
-    ask(Request::kTakeoff);
-    EXPECT_TRUE(until(Mode::kHold, seconds(30)));
-    forEachChunkOf();
-    ask(Request::kNavigate);
+  explicit Airborne(TelemetrySink* sink = nullptr) : BenchFlight(benchConfig("open", 3), sink) {
+    EXPECT_TRUE(takeOff());
+    EXPECT_TRUE(navigate(*plan.plan));
     EXPECT_EQ(mode(), Mode::kAuto);
     wait(seconds(5));
   }
-  void forEachChunkOf();
-  bool ask(Request request) {
-    const StepOutput& out = bench->step(OperatorCommand{7, ++sequence, request, plan.plan->hash});
-    return out.ack && out.ack->result == AckResult::kAccepted;
-  }
-  Mode mode() const { return bench->output().supervision.mode; }
-  void wait(Duration d) {
-    for (const Time end = bench->now() + d; bench->now() < end;) bench->step();
-  }
-  bool until(Mode wanted, Duration limit) {
-    for (const Time end = bench->now() + limit; bench->now() < end && mode() != wanted;)
-      bench->step();
-    return mode() == wanted;
-  }
 };
-
-void Airborne::forEachChunkOf() {
-  // The square has few waypoints: one chunk is enough.
-  tautline::mission_chunk_t chunk{};
-  chunk.session = 7;
-  chunk.sequence = ++sequence;
-  chunk.mission_hash = static_cast<std::int64_t>(plan.plan->hash);
-  chunk.waypoint_total = plan.plan->waypoint_count;
-  chunk.count = plan.plan->waypoint_count;
-  ASSERT_LE(chunk.count, tautline::mission_chunk_t::CAPACITY);
-  for (int i = 0; i < chunk.count; ++i) {
-    const Waypoint& w = plan.plan->waypoints[static_cast<std::size_t>(i)];
-    for (int k = 0; k < 3; ++k) chunk.position_m[i][k] = w.p_WD[k];
-    chunk.speed_mps[i] = w.speed;
-  }
-  bench->step({}, &chunk);
-}
 
 class Missions : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 
@@ -202,10 +147,7 @@ TEST(Lockstep, UnpluggedInAMissionLandsWhenPluggedInAgain) {
   EXPECT_EQ(flight.bench->output().command.length_rate, 0.0);
   EXPECT_EQ(flight.bench->output().command.elevation_rate, 0.0);
   flight.bench->port().plug();
-  EXPECT_TRUE(flight.until(Mode::kStandby, seconds(120)));
-  flight.wait(seconds(1));  // the last centimetres, rotors off
-  EXPECT_TRUE(flight.bench->truth().on_ground);
-  EXPECT_FALSE(flight.bench->truth().crashed);
+  EXPECT_TRUE(flight.landed(seconds(120)));
 }
 
 TEST(Lockstep, StopCutsTheMotorsAndStaysStopped) {
@@ -226,8 +168,7 @@ TEST(Lockstep, HoldStandsStillAndAMissionCanBeginAgain) {
   const Eigen::Vector3d before = flight.bench->truth().p_WD;
   flight.wait(seconds(10));
   EXPECT_LT((flight.bench->truth().p_WD - before).norm(), 0.3);
-  flight.forEachChunkOf();
-  EXPECT_TRUE(flight.ask(Request::kNavigate));
+  EXPECT_TRUE(flight.navigate(*flight.plan.plan));
   EXPECT_EQ(flight.mode(), Mode::kAuto);
 }
 
@@ -258,12 +199,6 @@ TEST(Lockstep, NavigateWithoutThatMissionIsRefused) {
   ASSERT_TRUE(out.ack);
   EXPECT_EQ(out.ack->result, AckResult::kBadMission);
   EXPECT_EQ(flight.mode(), Mode::kHold);
-}
-
-LockstepConfig busConfig(const std::string& scene, std::uint64_t seed) {
-  LockstepConfig config = benchConfig(scene, seed);
-  config.station = loadConfig<StationConfig>(kConfig / "station_tautline_serial.toml");
-  return config;
 }
 
 TEST(TautlineBus, FliesAMissionInLockstep) {
