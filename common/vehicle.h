@@ -154,6 +154,15 @@ struct SensorFrame {
   LinkStatus link;
 };
 
+/// What an operator's sticks ask for, in the terms of VehicleCommand.
+struct TeleopRates {
+  double length_rate{0.0};        ///< [m/s], pay-out positive.
+  double elevation_rate{0.0};     ///< [rad/s], up positive.
+  double azimuth_rate{0.0};       ///< [rad/s].
+  double yaw_rate{0.0};           ///< About +y [rad/s].
+  double gimbal_pitch_rate{0.0};  ///< Up positive [rad/s].
+};
+
 enum class VehicleAction : std::uint8_t {
   kNone,
   kTakeoff,    ///< Start motors and lift off; repeated by the supervisor until the vehicle says it

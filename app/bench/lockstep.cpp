@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include <tautline/operator_command_t.hpp>
 #include <tautline/sim_truth_t.hpp>
 
 #include "app/station/mission_upload.h"
+#include "app/station/operator_message.h"
 #include "app/version.h"
 #include "common/error.h"
 #include "common/toml/config_file.h"
@@ -21,6 +21,7 @@ namespace {
 
 constexpr Duration kTruthPeriod = std::chrono::milliseconds(20);
 constexpr Duration kLoopPeriod = std::chrono::seconds(1);
+constexpr Duration kHeartbeatPeriod = std::chrono::milliseconds(200);
 constexpr Duration kSettle = std::chrono::seconds(1);
 constexpr std::int64_t kSession = 1;  // the only operator there is
 
@@ -88,6 +89,7 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
   simulator_.advanceTo(now_);
   input_.now = now_;
   device_->read(now_, input_.sensors);
+  beat(command);
   input_.command = command;
   input_.chunk = chunk;
   const StepOutput& out = station_.step(input_);
@@ -100,10 +102,19 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
     if (now_ >= next_truth_) recordTruth();
     if (now_ >= next_loop_) {
       next_loop_ = now_ + kLoopPeriod;
-      telemetry_->publishLoop(now_, period_, statistics_.snapshot(), station_.commandsRefused());
+      telemetry_->publishLoop(now_, period_, statistics_.snapshot());
     }
   }
   return out;
+}
+
+/// The operator of the last command lives on, as the command line does while it waits.
+void Lockstep::beat(const std::optional<OperatorCommand>& command) noexcept {
+  if (command) session_ = command->session;
+  input_.heartbeat.reset();
+  if (session_ == 0 || silent_ || now_ < next_heartbeat_) return;
+  next_heartbeat_ = now_ + kHeartbeatPeriod;
+  input_.heartbeat = Heartbeat{session_, operatorName("bench")};
 }
 
 template <class Message>
@@ -118,12 +129,7 @@ void Lockstep::record(const char* channel, Message message) noexcept {
 /// What lcm-logger would have heard of the operator.
 void Lockstep::recordOperator() noexcept {
   if (input_.command) {
-    tautline::operator_command_t message{};
-    message.session = input_.command->session;
-    message.sequence = input_.command->sequence;
-    message.verb = static_cast<std::int8_t>(input_.command->request);
-    message.mission_hash = static_cast<std::int64_t>(input_.command->mission_hash);
-    record(channel::kOperatorCommand, message);
+    record(channel::kOperatorCommand, messageOf(*input_.command));
   }
   if (input_.chunk != nullptr) record(channel::kMissionChunk, *input_.chunk);
 }
@@ -139,7 +145,7 @@ FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration li
                         const std::function<void(const Lockstep&)>& each_cycle) {
   FlightResult result;
   const Time end = bench.now() + limit;
-  std::int32_t sequence = 0;
+  std::int64_t sequence = 0;
   const auto cycle = [&](const std::optional<OperatorCommand>& command = {},
                          const tautline::mission_chunk_t* chunk = nullptr) {
     const StepOutput& out = bench.step(command, chunk);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "app/bench/memory_port.h"
 #include "app/station/station.h"
@@ -48,9 +49,15 @@ class Lockstep {
   [[nodiscard]] const SensorFrame& sensors() const noexcept { return input_.sensors; }
   [[nodiscard]] MemoryPort& port() noexcept { return port_; }
 
+  /// Sticks of the operator from the next cycle on; none: hands off.
+  void holdSticks(const std::optional<Sticks>& sticks) noexcept { input_.sticks = sticks; }
+  /// The operator's program stops, or runs again: heartbeats.
+  void silence(bool silent) noexcept { silent_ = silent; }
+
  private:
   template <class Message>
   void record(const char* channel, Message message) noexcept;
+  void beat(const std::optional<OperatorCommand>& command) noexcept;
   void recordOperator() noexcept;
   void recordTruth() noexcept;
 
@@ -66,6 +73,9 @@ class Lockstep {
   StepInput input_;
   const StepOutput* output_{nullptr};
   Time now_{};
+  std::int64_t session_{0};  ///< Of the operator who sent the last command; 0: none yet.
+  bool silent_{false};
+  Time next_heartbeat_{};
   Time next_truth_{};
   Time next_loop_{};
   LoopStatistics statistics_;

@@ -48,6 +48,10 @@ enum class EventCode : std::uint8_t {
   kLinkBusErrors,
   kLinkNoAcknowledge,
   kLinkFaultCleared,
+  kOperatorAccepted,  ///< This and the following are the audit of operators.
+  kOperatorRefused,
+  kLeaseChanged,
+  kParameterChanged,
 };
 
 struct EventText {
@@ -58,7 +62,7 @@ struct EventText {
   const char* remedy;
 };
 
-inline constexpr std::array<EventText, 29> kEventTexts{{
+inline constexpr std::array<EventText, 33> kEventTexts{{
     {EventCode::kModeChanged, Severity::kInfo, "mode ", "", ""},
     {EventCode::kMissionCompleted, Severity::kInfo, "mission completed",
      "hovering at its last waypoint", ""},
@@ -120,6 +124,10 @@ inline constexpr std::array<EventText, 29> kEventTexts{{
     {EventCode::kLinkNoAcknowledge, Severity::kError, "nobody on the bus acknowledges", "no arming",
      "switch the devices on; then check wiring, bit rate and termination"},
     {EventCode::kLinkFaultCleared, Severity::kInfo, "the link is in order again", "", ""},
+    {EventCode::kOperatorAccepted, Severity::kInfo, "", "", ""},
+    {EventCode::kOperatorRefused, Severity::kWarning, "", "", ""},
+    {EventCode::kLeaseChanged, Severity::kInfo, "lease ", "", ""},
+    {EventCode::kParameterChanged, Severity::kInfo, "", "", ""},
 }};
 
 /// Real-time safe: no allocation, no locks, no exceptions.
@@ -135,6 +143,11 @@ inline constexpr std::array<EventText, 29> kEventTexts{{
 }
 static_assert(eventOf(LinkFault::kSilent) == EventCode::kLinkSilent &&
               eventOf(LinkFault::kNoAcknowledge) == EventCode::kLinkNoAcknowledge);
+
+/// Who did what; told apart from what happens to the drone.
+[[nodiscard]] constexpr bool isAudit(EventCode code) noexcept {
+  return code >= EventCode::kOperatorAccepted;
+}
 
 static_assert(
     [] {

@@ -28,6 +28,7 @@ struct GuidanceInput {
   VehiclePhase vehicle{VehiclePhase::kUnknown};  ///< What the vehicle says it is doing.
   const SensorFrame* sensors{};                  ///< For look-at.
   const MissionPlan* plan{};                     ///< For AUTO; null: none.
+  std::optional<TeleopRates> teleop;             ///< For TELEOP; none: stand still.
 };
 
 struct GuidanceOutput {

@@ -19,6 +19,7 @@
 #include "control/control_config.h"
 #include "control/motion_executor.h"
 #include "control/reel_dead_zone.h"
+#include "supervision/authority_config.h"
 #include "supervision/supervisor.h"
 #include "control/vehicle_limits.h"
 #include "drivers/can_socket.h"
@@ -66,6 +67,7 @@ struct CoreConfig {
   GuidanceConfig guidance;
   LocalizerConfig localizer;
   SupervisorConfig supervisor;
+  AuthorityConfig authority;
   ExecutorConfig executor;
   ControlConfig control;
   VehicleLimits limits;
@@ -78,6 +80,7 @@ struct CoreConfig {
     v.section("guidance", guidance);
     v.section("localizer", localizer);
     v.section("supervisor", supervisor);
+    v.section("authority", authority);
     v.section("executor", executor);
     v.section("control", control);
     v.section("limits", limits);
