@@ -154,13 +154,14 @@ struct SensorFrame {
   LinkStatus link;
 };
 
-/// What an operator's sticks ask for, in the terms of VehicleCommand.
+/// What the operator's sticks ask for: rates of the vehicle's own set-points, relative to the active
+/// anchor, as in VehicleCommand.
 struct TeleopRates {
-  double length_rate{0.0};        ///< [m/s], pay-out positive.
-  double elevation_rate{0.0};     ///< [rad/s], up positive.
-  double azimuth_rate{0.0};       ///< [rad/s].
-  double yaw_rate{0.0};           ///< About +y [rad/s].
-  double gimbal_pitch_rate{0.0};  ///< Up positive [rad/s].
+  double length{0.0};        ///< dL/dt [m/s], pay-out positive.
+  double elevation{0.0};     ///< d(theta)/dt [rad/s], up positive.
+  double azimuth{0.0};       ///< d(phi)/dt [rad/s].
+  double yaw{0.0};           ///< About +y [rad/s].
+  double gimbal_pitch{0.0};  ///< Up positive [rad/s].
 };
 
 enum class VehicleAction : std::uint8_t {

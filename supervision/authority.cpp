@@ -32,8 +32,8 @@ bool Authority::takeIfFree(Time now, std::int64_t session, const OperatorName& n
 }
 
 bool Authority::beyondDeadBand(const TeleopRates& r) const noexcept {
-  return std::max({std::abs(r.length_rate), std::abs(r.elevation_rate), std::abs(r.azimuth_rate),
-                   std::abs(r.yaw_rate), std::abs(r.gimbal_pitch_rate)}) > config_.stick_dead_band;
+  return std::max({std::abs(r.length), std::abs(r.elevation), std::abs(r.azimuth),
+                   std::abs(r.yaw), std::abs(r.gimbal_pitch)}) > config_.stick_dead_band;
 }
 
 void Authority::update(Time now, Mode mode, const std::optional<Heartbeat>& heartbeat,

@@ -57,11 +57,11 @@ tautline::station_input_t messageOf(const StepInput& in) noexcept {
     const TeleopRates& rates = in.sticks->rates;
     m.sticks_session = in.sticks->session;
     m.sticks_dead_man = in.sticks->dead_man;
-    m.sticks_length_rate_mps = rates.length_rate;
-    m.sticks_elevation_rate_radps = rates.elevation_rate;
-    m.sticks_azimuth_rate_radps = rates.azimuth_rate;
-    m.sticks_yaw_rate_radps = rates.yaw_rate;
-    m.sticks_gimbal_pitch_rate_radps = rates.gimbal_pitch_rate;
+    m.sticks_length_rate_mps = rates.length;
+    m.sticks_elevation_rate_radps = rates.elevation;
+    m.sticks_azimuth_rate_radps = rates.azimuth;
+    m.sticks_yaw_rate_radps = rates.yaw;
+    m.sticks_gimbal_pitch_rate_radps = rates.gimbal_pitch;
   }
   m.has_turned_away = in.turned_away ? 1 : 0;
   if (in.turned_away) {
