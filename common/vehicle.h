@@ -182,6 +182,16 @@ struct SensorFrame {
   LinkStatus link;
 };
 
+/// What the operator's sticks ask for: rates of the vehicle's own set-points, relative to the active
+/// anchor, as in VehicleCommand.
+struct TeleopRates {
+  double length{0.0};        ///< dL/dt [m/s], pay-out positive.
+  double elevation{0.0};     ///< d(theta)/dt [rad/s], up positive.
+  double azimuth{0.0};       ///< d(phi)/dt [rad/s].
+  double yaw{0.0};           ///< About +y [rad/s].
+  double gimbal_pitch{0.0};  ///< Up positive [rad/s].
+};
+
 enum class VehicleAction : std::uint8_t {
   kNone,
   kTakeoff,    ///< Start motors and lift off; repeated by the supervisor until the vehicle says it

@@ -88,13 +88,13 @@ std::string failureLine(const CaseResult& r, const std::string& repeat) {
 }
 
 std::string summary(const std::vector<CaseResult>& results, double wall_s) {
-  const auto passed = std::count_if(results.begin(), results.end(),
-                                    [](const CaseResult& r) { return r.passed(); });
-  return fmt::format("{} passed, {} failed; {:.0f} s of flight in {:.1f} s, {:.0f} times real time, "
-                     "{:.1f} cases a second",
-                     passed, static_cast<std::ptrdiff_t>(results.size()) - passed,
-                     flightSeconds(results), wall_s, flightSeconds(results) / wall_s,
-                     static_cast<double>(results.size()) / wall_s);
+  const auto passed =
+      std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return r.passed(); });
+  return fmt::format(
+      "{} passed, {} failed; {:.0f} s of flight in {:.1f} s, {:.0f} times real time, "
+      "{:.1f} cases a second",
+      passed, static_cast<std::ptrdiff_t>(results.size()) - passed, flightSeconds(results), wall_s,
+      flightSeconds(results) / wall_s, static_cast<double>(results.size()) / wall_s);
 }
 
 void writeJunit(const std::string& path, const std::string& suite,

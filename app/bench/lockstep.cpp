@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include <tautline/operator_command_t.hpp>
 #include <tautline/sim_truth_t.hpp>
 
 #include "app/station/mission_upload.h"
+#include "app/station/operator_message.h"
 #include "app/version.h"
 #include "common/error.h"
 #include "common/toml/config_file.h"
@@ -21,6 +21,7 @@ namespace {
 
 constexpr Duration kTruthPeriod = std::chrono::milliseconds(20);
 constexpr Duration kLoopPeriod = std::chrono::seconds(1);
+constexpr Duration kHeartbeatPeriod = std::chrono::milliseconds(200);
 constexpr Duration kSettle = std::chrono::seconds(1);
 constexpr std::int64_t kSession = 1;  // the only operator there is
 
@@ -97,11 +98,12 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
   }
   input_.now = now_ + faults_.clockAhead();
   device_->read(input_.now, input_.sensors);
+  beat(command);
   input_.command = faults_.hear(command);
   input_.chunk = faults_.operatorCut() ? nullptr : chunk;
-  input_.missed_in_a_row =
-      late > Duration::zero() ? input_.missed_in_a_row + static_cast<std::int32_t>(late / period_)
-                              : 0;
+  input_.missed_in_a_row = late > Duration::zero()
+                               ? input_.missed_in_a_row + static_cast<std::int32_t>(late / period_)
+                               : 0;
   const StepOutput& out = station_.step(input_);
   device_->write(input_.now, out.command);
   output_ = &out;
@@ -112,7 +114,7 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
     if (now_ >= next_truth_) recordTruth();
     if (now_ >= next_loop_) {
       next_loop_ = now_ + kLoopPeriod;
-      telemetry_->publishLoop(now_, period_, statistics_.snapshot(), station_.commandsRefused());
+      telemetry_->publishLoop(now_, period_, statistics_.snapshot());
     }
   }
   return out;
@@ -134,83 +136,85 @@ void Lockstep::inject(const sim::Fault& fault) {
                       .problem = "too many faults at once",
                       .allowed = "at most " + std::to_string(sim::kMaxFaults)});
   }
-}
-
-template <class Message>
-void Lockstep::record(const char* channel, Message message) noexcept {
-  std::array<std::uint8_t, 4096> buffer{};
-  message.utime = toMicroseconds(input_.now);
-  const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
-  if (size > 0)
-    sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});
-}
-
-/// What lcm-logger would have heard of the operator.
-void Lockstep::recordOperator() noexcept {
-  if (input_.command) {
-    tautline::operator_command_t message{};
-    message.session = input_.command->session;
-    message.sequence = input_.command->sequence;
-    message.verb = static_cast<std::int8_t>(input_.command->request);
-    message.mission_hash = static_cast<std::int64_t>(input_.command->mission_hash);
-    record(channel::kOperatorCommand, message);
+  /// The operator of the last command lives on, as the command line does while it waits.
+  void Lockstep::beat(const std::optional<OperatorCommand>& command) noexcept {
+    if (command) session_ = command->session;
+    input_.heartbeat.reset();
+    if (session_ == 0 || silent_ || faults_.operatorCut() || now_ < next_heartbeat_) return;
+    next_heartbeat_ = now_ + kHeartbeatPeriod;
+    input_.heartbeat = Heartbeat{session_, operatorName("bench")};
   }
-  if (input_.chunk != nullptr) record(channel::kMissionChunk, *input_.chunk);
-}
 
-void Lockstep::recordTruth() noexcept {
-  next_truth_ = now_ + kTruthPeriod;
-  tautline::sim_truth_t message{};
-  sim::fillTruth(truth(), 0, message);
-  record(channel::kSimTruth, message);
-}
+  template <class Message>
+  void Lockstep::record(const char* channel, Message message) noexcept {
+    std::array<std::uint8_t, 4096> buffer{};
+    message.utime = toMicroseconds(input_.now);
+    const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
+    if (size > 0)
+      sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});
+  }
 
-FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration limit,
-                        const std::function<void(const Lockstep&)>& each_cycle) {
-  FlightResult result;
-  const Time end = bench.now() + limit;
-  std::int32_t sequence = 0;
-  const auto cycle = [&](const std::optional<OperatorCommand>& command = {},
-                         const tautline::mission_chunk_t* chunk = nullptr) {
-    const StepOutput& out = bench.step(command, chunk);
-    if (each_cycle) each_cycle(bench);
-    return out.ack && out.ack->result == AckResult::kAccepted;
-  };
-  const auto ask = [&](Request request) {
-    return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash});
-  };
-  const auto over = [&] { return bench.now() >= end || bench.truth().crashed; };
-  const auto flyUntil = [&](Mode mode) {
-    while (!over() && bench.output().supervision.mode != mode) cycle();
-    return !over();
-  };
+  /// What lcm-logger would have heard of the operator.
+  void Lockstep::recordOperator() noexcept {
+    if (input_.command) {
+      record(channel::kOperatorCommand, messageOf(*input_.command));
+    }
+    if (input_.chunk != nullptr) record(channel::kMissionChunk, *input_.chunk);
+  }
 
-  // Telemetry has to run for a moment before the station lets itself be armed.
-  while (!result.armed && !over()) {
-    for (int i = 0; i < 50; ++i) cycle();
-    result.armed = ask(Request::kArm);
+  void Lockstep::recordTruth() noexcept {
+    next_truth_ = now_ + kTruthPeriod;
+    tautline::sim_truth_t message{};
+    sim::fillTruth(truth(), 0, message);
+    record(channel::kSimTruth, message);
   }
-  result.took_off = result.armed && ask(Request::kTakeoff) && flyUntil(Mode::kHold);
-  if (result.took_off) {
-    forEachChunk(mission, [&](tautline::mission_chunk_t& chunk) {
-      chunk.session = kSession;
-      chunk.sequence = ++sequence;
-      return cycle({}, &chunk);
-    });
-    if (ask(Request::kNavigate)) flyUntil(Mode::kHold);
-    result.completed = bench.output().mission.state == MissionState::kCompleted;
+
+  FlightResult flyMission(Lockstep & bench, const MissionPlan& mission, Duration limit,
+                          const std::function<void(const Lockstep&)>& each_cycle) {
+    FlightResult result;
+    const Time end = bench.now() + limit;
+    std::int64_t sequence = 0;
+    const auto cycle = [&](const std::optional<OperatorCommand>& command = {},
+                           const tautline::mission_chunk_t* chunk = nullptr) {
+      const StepOutput& out = bench.step(command, chunk);
+      if (each_cycle) each_cycle(bench);
+      return out.ack && out.ack->result == AckResult::kAccepted;
+    };
+    const auto ask = [&](Request request) {
+      return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash});
+    };
+    const auto over = [&] { return bench.now() >= end || bench.truth().crashed; };
+    const auto flyUntil = [&](Mode mode) {
+      while (!over() && bench.output().supervision.mode != mode) cycle();
+      return !over();
+    };
+
+    // Telemetry has to run for a moment before the station lets itself be armed.
+    while (!result.armed && !over()) {
+      for (int i = 0; i < 50; ++i) cycle();
+      result.armed = ask(Request::kArm);
+    }
+    result.took_off = result.armed && ask(Request::kTakeoff) && flyUntil(Mode::kHold);
+    if (result.took_off) {
+      forEachChunk(mission, [&](tautline::mission_chunk_t& chunk) {
+        chunk.session = kSession;
+        chunk.sequence = ++sequence;
+        return cycle({}, &chunk);
+      });
+      if (ask(Request::kNavigate)) flyUntil(Mode::kHold);
+      result.completed = bench.output().mission.state == MissionState::kCompleted;
+    }
+    if (!over() && bench.output().supervision.mode != Mode::kStandby) {
+      ask(Request::kLand);
+      flyUntil(Mode::kStandby);
+      for (const Time settled = bench.now() + kSettle; bench.now() < settled;)
+        cycle();  // the last centimetres, rotors off
+      result.landed = bench.output().supervision.mode == Mode::kStandby &&
+                      bench.truth().on_ground && !bench.truth().motors_on && !bench.truth().crashed;
+    }
+    result.crash = bench.truth().crash_reason;
+    result.duration = bench.now() - Time{};
+    return result;
   }
-  if (!over() && bench.output().supervision.mode != Mode::kStandby) {
-    ask(Request::kLand);
-    flyUntil(Mode::kStandby);
-    for (const Time settled = bench.now() + kSettle; bench.now() < settled;)
-      cycle();  // the last centimetres, rotors off
-    result.landed = bench.output().supervision.mode == Mode::kStandby && bench.truth().on_ground &&
-                    !bench.truth().motors_on && !bench.truth().crashed;
-  }
-  result.crash = bench.truth().crash_reason;
-  result.duration = bench.now() - Time{};
-  return result;
-}
 
 }  // namespace tautline::bench

@@ -59,9 +59,15 @@ class Lockstep {
   [[nodiscard]] double floor() const noexcept { return floor_; }  ///< In W [m].
   [[nodiscard]] MemoryPort& port() noexcept { return port_; }
 
+  /// Sticks of the operator from the next cycle on; none: hands off.
+  void holdSticks(const std::optional<Sticks>& sticks) noexcept { input_.sticks = sticks; }
+  /// The operator's program stops, or runs again: heartbeats.
+  void silence(bool silent) noexcept { silent_ = silent; }
+
  private:
   template <class Message>
   void record(const char* channel, Message message) noexcept;
+  void beat(const std::optional<OperatorCommand>& command) noexcept;
   void recordOperator() noexcept;
   void recordTruth() noexcept;
 
@@ -79,6 +85,9 @@ class Lockstep {
   StepInput input_;
   const StepOutput* output_{nullptr};
   Time now_{};
+  std::int64_t session_{0};  ///< Of the operator who sent the last command; 0: none yet.
+  bool silent_{false};
+  Time next_heartbeat_{};
   Time next_truth_{};
   Time next_loop_{};
   LoopStatistics statistics_;

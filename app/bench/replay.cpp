@@ -46,7 +46,7 @@ class CommandCatcher final : public TelemetrySink {
   std::vector<std::uint8_t> last_;
 };
 
-using ChunkKey = std::pair<std::int64_t, std::int32_t>;
+using ChunkKey = std::pair<std::int64_t, std::int64_t>;
 
 /// What a first pass over the log collects.
 struct Contents {

@@ -22,7 +22,7 @@
 #include <tautline/tether_state_t.hpp>
 #include <tautline/vehicle_state_t.hpp>
 
-#include "app/station/operator_command.h"
+#include "supervision/operator_command.h"
 #include "common/mission_plan.h"
 #include "common/time.h"
 

@@ -61,6 +61,10 @@ enum class EventCode : std::uint8_t {
   kLinkCanSettings,
   kLinkPortFailed,
   kLinkFaultCleared,
+  kOperatorAccepted,  ///< This and the following are the audit of operators.
+  kOperatorRefused,
+  kLeaseChanged,
+  kParameterChanged,
 };
 
 /// In text and remedy {} stands for the serial device or CAN interface; appendText() puts it in.
@@ -72,7 +76,7 @@ struct EventText {
   const char* remedy;
 };
 
-inline constexpr std::array<EventText, 40> kEventTexts{{
+inline constexpr auto kEventTexts = std::to_array<EventText>({
     {EventCode::kModeChanged, Severity::kInfo, "mode ", "", ""},
     {EventCode::kMissionCompleted, Severity::kInfo, "mission completed",
      "hovering at its last waypoint", ""},
@@ -160,7 +164,11 @@ inline constexpr std::array<EventText, 40> kEventTexts{{
     {EventCode::kLinkPortFailed, Severity::kError, "{} cannot be opened", "no arming; trying again",
      "check cable and name; `dmesg | tail` may say more"},
     {EventCode::kLinkFaultCleared, Severity::kInfo, "the link is in order again", "", ""},
-}};
+    {EventCode::kOperatorAccepted, Severity::kInfo, "", "", ""},
+    {EventCode::kOperatorRefused, Severity::kWarning, "", "", ""},
+    {EventCode::kLeaseChanged, Severity::kInfo, "lease ", "", ""},
+    {EventCode::kParameterChanged, Severity::kInfo, "", "", ""},
+});
 
 /// Real-time safe: no allocation, no locks, no exceptions.
 [[nodiscard]] constexpr const EventText& textOf(EventCode code) noexcept {
@@ -185,6 +193,11 @@ inline void appendText(std::string& out, std::string_view text, std::string_view
 }
 static_assert(eventOf(LinkFault::kSilent) == EventCode::kLinkSilent &&
               eventOf(LinkFault::kPortFailed) == EventCode::kLinkPortFailed);
+
+/// Who did what; told apart from what happens to the drone.
+[[nodiscard]] constexpr bool isAudit(EventCode code) noexcept {
+  return code >= EventCode::kOperatorAccepted;
+}
 
 static_assert(
     [] {

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 
-#include "app/station/teleop.h"
 #include "common/estimate.h"
 #include "common/mission_plan.h"
 #include "common/vehicle.h"

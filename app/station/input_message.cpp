@@ -38,11 +38,37 @@ tautline::station_input_t messageOf(const StepInput& in) noexcept {
   if (in.command) {
     m.command_session = in.command->session;
     m.command_sequence = in.command->sequence;
+    put(m.command_name, in.command->name);
     m.command_verb = as<std::int8_t>(in.command->request);
+    m.command_service = as<std::int8_t>(in.command->service);
     m.command_mission_hash = as<std::int64_t>(in.command->mission_hash);
+    m.command_parameter = as<std::int64_t>(in.command->parameter);
+    m.command_value = in.command->value;
   }
   m.chunk_session = in.chunk != nullptr ? in.chunk->session : 0;
   m.chunk_sequence = in.chunk != nullptr ? in.chunk->sequence : 0;
+  m.has_heartbeat = in.heartbeat ? 1 : 0;
+  if (in.heartbeat) {
+    m.heartbeat_session = in.heartbeat->session;
+    put(m.heartbeat_name, in.heartbeat->name);
+  }
+  m.has_sticks = in.sticks ? 1 : 0;
+  if (in.sticks) {
+    const TeleopRates& rates = in.sticks->rates;
+    m.sticks_session = in.sticks->session;
+    m.sticks_dead_man = in.sticks->dead_man;
+    m.sticks_length_rate_mps = rates.length;
+    m.sticks_elevation_rate_radps = rates.elevation;
+    m.sticks_azimuth_rate_radps = rates.azimuth;
+    m.sticks_yaw_rate_radps = rates.yaw;
+    m.sticks_gimbal_pitch_rate_radps = rates.gimbal_pitch;
+  }
+  m.has_turned_away = in.turned_away ? 1 : 0;
+  if (in.turned_away) {
+    m.turned_away_session = in.turned_away->session;
+    m.turned_away_sequence = in.turned_away->sequence;
+    m.turned_away_result = as<std::int8_t>(in.turned_away->result);
+  }
   m.loop_overruns = in.missed_in_a_row;
 
   m.reel_time_ns = nanosecondsOf(f.reel);
@@ -94,9 +120,27 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
   in.now = timeOf(m.now_ns);
   in.missed_in_a_row = m.loop_overruns;
   if (m.has_command) {
-    in.command =
-        OperatorCommand{m.command_session, m.command_sequence, static_cast<Request>(m.command_verb),
-                        static_cast<std::uint64_t>(m.command_mission_hash)};
+    in.command = OperatorCommand{.session = m.command_session,
+                                 .sequence = m.command_sequence,
+                                 .request = static_cast<Request>(m.command_verb),
+                                 .mission_hash = as<std::uint64_t>(m.command_mission_hash),
+                                 .service = static_cast<Service>(m.command_service),
+                                 .parameter = as<std::uint64_t>(m.command_parameter),
+                                 .value = m.command_value,
+                                 .name = nameFromBytes(m.command_name)};
+  }
+  if (m.has_heartbeat)
+    in.heartbeat = Heartbeat{m.heartbeat_session, nameFromBytes(m.heartbeat_name)};
+  if (m.has_sticks) {
+    in.sticks = Sticks{
+        m.sticks_session,
+        m.sticks_dead_man != 0,
+        {m.sticks_length_rate_mps, m.sticks_elevation_rate_radps, m.sticks_azimuth_rate_radps,
+         m.sticks_yaw_rate_radps, m.sticks_gimbal_pitch_rate_radps}};
+  }
+  if (m.has_turned_away) {
+    in.turned_away = TurnedAway{m.turned_away_session, m.turned_away_sequence,
+                                static_cast<AckResult>(m.turned_away_result)};
   }
   SensorFrame& f = in.sensors;
   fill(f.reel, m.reel_time_ns, m.reel_sequence, m.reel_valid);

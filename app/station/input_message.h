@@ -5,6 +5,7 @@
 /// and such a message as input for a core that steps the flight again. One field more here is one
 /// field more in both.
 
+#include <algorithm>
 #include <cstdint>
 
 #include <Eigen/Geometry>
@@ -28,6 +29,10 @@ inline void put(double (&wxyz)[4], const Eigen::Quaterniond& q) noexcept {
   wxyz[1] = q.x();
   wxyz[2] = q.y();
   wxyz[3] = q.z();
+}
+
+inline void put(std::uint8_t (&bytes)[32], const OperatorName& name) noexcept {
+  std::copy(name.begin(), name.end(), bytes);
 }
 
 /// The link's counters, which several messages carry under the same names.

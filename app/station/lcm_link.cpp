@@ -6,13 +6,25 @@
 
 namespace tautline {
 
-LcmLink::LcmLink(const std::string& url) : lcm_(reachable(url)) {
+LcmLink::LcmLink(const std::string& url, const AuthorityConfig& authority)
+    : lcm_(reachable(url)), inbox_(authority) {
   if (!lcm_.good()) throw cannotJoin(url);
-  lcm_t* lcm = lcm_.getUnderlyingLCM();
+  subscribe<&OperatorInbox::command>(channel::kOperatorCommand);
+  subscribe<&OperatorInbox::chunk>(channel::kMissionChunk);
+  subscribe<&OperatorInbox::heartbeat>(channel::kHeartbeat);
+  subscribe<&OperatorInbox::sticks>(channel::kTeleop);
+}
+
+template <void (OperatorInbox::*take)(std::span<const std::uint8_t>) noexcept>
+void LcmLink::subscribe(const char* channel) {
   lcm_subscription_set_queue_capacity(
-      lcm_subscribe(lcm, channel::kOperatorCommand, &LcmLink::onCommand, this), kQueueCapacity);
-  lcm_subscription_set_queue_capacity(
-      lcm_subscribe(lcm, channel::kMissionChunk, &LcmLink::onChunk, this), kQueueCapacity);
+      lcm_subscribe(lcm_.getUnderlyingLCM(), channel, &LcmLink::on<take>, this), kQueueCapacity);
+}
+
+template <void (OperatorInbox::*take)(std::span<const std::uint8_t>) noexcept>
+void LcmLink::on(const lcm_recv_buf_t* bytes, const char* /*channel*/, void* self) noexcept {
+  (static_cast<LcmLink*>(self)->inbox_.*
+   take)({static_cast<const std::uint8_t*>(bytes->data), bytes->data_size});
 }
 
 bool LcmLink::publish(const char* channel, std::int64_t /*utime*/,
@@ -22,30 +34,11 @@ bool LcmLink::publish(const char* channel, std::int64_t /*utime*/,
                      static_cast<unsigned>(bytes.size())) == 0;
 }
 
-void LcmLink::poll() noexcept {
-  command_.reset();
-  chunk_.reset();
-  for (int i = 0; i < kMaxMessagesPerPoll && !command_ && !chunk_; ++i) {
+void LcmLink::poll(Time now, std::int64_t holder) noexcept {
+  inbox_.beginCycle(now, holder);
+  for (int i = 0; i < kMaxMessagesPerPoll; ++i)
     if (lcm_handle_timeout(lcm_.getUnderlyingLCM(), 0) <= 0) return;
-  }
-}
-
-void LcmLink::onCommand(const lcm_recv_buf_t* bytes, const char* /*channel*/, void* self) noexcept {
-  tautline::operator_command_t m;
-  if (m.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0)
-    return;  // fixed size: short or foreign bytes are refused
-  OperatorCommand command;
-  command.session = m.session;
-  command.sequence = m.sequence;
-  command.request = static_cast<Request>(m.verb);
-  command.mission_hash = static_cast<std::uint64_t>(m.mission_hash);
-  static_cast<LcmLink*>(self)->command_ = command;
-}
-
-void LcmLink::onChunk(const lcm_recv_buf_t* bytes, const char* /*channel*/, void* self) noexcept {
-  tautline::mission_chunk_t m;
-  if (m.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0) return;
-  static_cast<LcmLink*>(self)->chunk_ = m;
+  inbox_.overflowed();
 }
 
 }  // namespace tautline

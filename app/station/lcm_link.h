@@ -1,19 +1,16 @@
 #pragma once
 
 /// @file
-/// The station's side of LCM: publishes finished bytes, takes commands and missions in without ever
+/// The station's side of LCM: publishes finished bytes, takes what operators send in without ever
 /// waiting.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 
 #include <lcm/lcm-cpp.hpp>
-#include <tautline/mission_chunk_t.hpp>
-#include <tautline/operator_command_t.hpp>
 
-#include "app/station/operator_command.h"
+#include "app/station/operator_inbox.h"
 #include "app/station/telemetry.h"
 
 namespace tautline {
@@ -24,33 +21,33 @@ class LcmLink final : public TelemetrySink {
   /// the loop's priority.
   /// @throws InputError (exit code kTimeout) with the command that mends it. Not real-time safe:
   /// start-up only.
-  explicit LcmLink(const std::string& url);
+  explicit LcmLink(const std::string& url, const AuthorityConfig& authority = {});
 
   bool publish(const char* channel, std::int64_t utime,
                std::span<const std::uint8_t> bytes) noexcept override;
 
-  /// Handles what has arrived until there is something for the core, at most a few messages. Never
-  /// waits, never throws.
-  void poll() noexcept;
+  /// Puts what has arrived into the inbox, at most kMaxMessagesPerPoll messages. Never waits, never
+  /// throws.
+  /// @param holder session that holds the lease, 0: none.
+  void poll(Time now, std::int64_t holder) noexcept;
 
-  /// What the last poll() brought; at most one of the two.
-  [[nodiscard]] const std::optional<OperatorCommand>& command() const noexcept { return command_; }
-  [[nodiscard]] const tautline::mission_chunk_t* chunk() const noexcept {
-    return chunk_ ? &*chunk_ : nullptr;
-  }
+  /// What the last poll() brought.
+  [[nodiscard]] const OperatorInbox& inbox() const noexcept { return inbox_; }
 
  private:
-  // Raw handlers of the C library: the C++ one makes a std::string of the channel for every
+  // A raw handler of the C library: the C++ one makes a std::string of the channel for every
   // message.
-  static void onCommand(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
-  static void onChunk(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
+  template <void (OperatorInbox::*take)(std::span<const std::uint8_t>) noexcept>
+  static void on(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
+  template <void (OperatorInbox::*take)(std::span<const std::uint8_t>) noexcept>
+  void subscribe(const char* channel);
 
-  static constexpr int kMaxMessagesPerPoll = 8;
-  static constexpr int kQueueCapacity = 64;
+  /// A flood of 10,000 messages a second is read as it comes by a loop of 100 Hz.
+  static constexpr int kMaxMessagesPerPoll = 128;
+  static constexpr int kQueueCapacity = 128;  ///< For each channel.
 
   lcm::LCM lcm_;
-  std::optional<OperatorCommand> command_;
-  std::optional<tautline::mission_chunk_t> chunk_;
+  OperatorInbox inbox_;
 };
 
 }  // namespace tautline

@@ -115,7 +115,7 @@ void run(const Options& options) {
     return;
   }
 
-  LcmLink lcm(options.lcm_url);
+  LcmLink lcm(options.lcm_url, config.core.authority);
   const StationDevice made = makeDevice(config);
   Device& device = *made.device;
   if (!made.warning.empty())

@@ -17,6 +17,7 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
   TickGrid grid(period, monotonicNow() + period);
   Time next_statistics = grid.next();
   int until_params = 0;
+  parts.telemetry.addRefusalsOf(parts.lcm.inbox().counts());
 
   while (stop == 0) {
     sleepUntil(grid.next());
@@ -24,17 +25,15 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
     const Duration lateness = in.now - grid.next();
 
     parts.device.read(in.now, in.sensors);
-    parts.lcm.poll();
-    in.command = parts.lcm.command();
-    in.chunk = parts.lcm.chunk();
+    parts.lcm.poll(in.now, parts.station.lease().session);
+    parts.lcm.inbox().fill(in);
     const StepOutput& out = parts.station.step(in);
     parts.device.write(in.now, out.command);
     parts.telemetry.publish(in, out);
 
     if (in.now >= next_statistics) {
       next_statistics += kStatisticsPeriod;
-      parts.telemetry.publishLoop(in.now, period, statistics.snapshot(),
-                                  parts.station.commandsRefused());
+      parts.telemetry.publishLoop(in.now, period, statistics.snapshot());
       statistics.startWindow();
       if (until_params == 0) {
         parts.telemetry.publishParams(in.now);

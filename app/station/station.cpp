@@ -1,5 +1,7 @@
 #include "app/station/station.h"
 
+#include <memory>
+
 namespace tautline {
 namespace {
 
@@ -45,27 +47,28 @@ Station::Station(const CoreConfig& config)
       guidance_(config_.guidance, config_.executor, config_.control.composite.pole, config_.limits),
       controller_(makeController(config_.control)),
       dead_zone_(config_.reel_dead_zone),
-      gate_(config_.gate, config_.limits) {}
+      gate_(config_.gate, config_.limits),
+      dialogue_(config_, missions_) {}
 
 const StepOutput& Station::step(const StepInput& in) noexcept {
   const Duration dt = last_step_ ? in.now - *last_step_ : Duration::zero();
   if (!last_step_) localizer_.reset(config_.guidance.home_position_m, in.now);
   last_step_ = in.now;
   out_.event_count = 0;
-  out_.ack.reset();
+  const Request request = dialogue_.take(in, supervisor_.mode());
+  if (dialogue_.parameter()) reconfigure(in.now);
 
   // Sense: ages and ranges, then where the drone is.
   const ConditionSet conditions_before = out_.conditions;
   out_.anchor = guidance_.contacts().anchor();
   out_.estimate = localizer_.update(in.now, in.sensors, last_command_, out_.anchor);
-  out_.conditions = assess(in, out_.estimate);
+  out_.conditions = assess(in, out_.estimate) | dialogue_.conditions(in.now, supervisor_.mode());
   tellChanges(conditions_before);
   tellLink(in.sensors.link.fault);
 
   // Decide: what the operator asks for, what the supervisor allows.
-  const Request request = takeCommand(in);
   out_.supervision = supervisor_.step(in.now, out_.conditions, request);
-  if (in.command && !out_.ack) acknowledge(*in.command);
+  dialogue_.answer(in.now, out_.supervision);
   if (out_.supervision.changed) enterMode(in.now);
 
   // Fly: where to, how, and the last gate.  Critical for safety: nothing may come between the gate
@@ -79,7 +82,8 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
                                                     .vehicle = in.sensors.vehicle.value.phase,
                                                     .sensors = &in.sensors,
                                                     .plan = missions_.active(),
-                                                    .conditions = out_.conditions});
+                                                    .conditions = out_.conditions,
+                                                    .teleop = dialogue_.authority().rates(in.now)});
   const VehicleCommand wanted = control(dt, guidance);
   const VehicleCommand gated = gate_.apply(dt, wanted).command;
   out_.command = override(gated);
@@ -87,6 +91,8 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   last_command_ = out_.command;
 
   // Tell.
+  out_.ack = dialogue_.ack();
+  out_.operators = &dialogue_;
   out_.mission = guidance_.mission();
   out_.contact_id = guidance_.contacts().activeId();
   out_.loaded_hash = missions_.loaded() != nullptr ? missions_.loaded()->hash : 0;
@@ -120,46 +126,17 @@ ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noex
   return set;
 }
 
-/// What the supervisor is asked in this cycle; answers at once what never gets that far.
-Request Station::takeCommand(const StepInput& in) noexcept {
-  if (in.chunk != nullptr) {
-    const bool good = missions_.add(*in.chunk);
-    answer(in.chunk->session, in.chunk->sequence,
-           good ? AckResult::kAccepted : AckResult::kBadMission, {});
-    out_.ack->detail = missions_.receivedWaypoints();
-  }
-  if (!in.command) return Request::kNone;
-  const OperatorCommand& c = *in.command;
-  if (c.request == Request::kNone || c.request > Request::kEstop) {
-    answer(c.session, c.sequence, AckResult::kUnknown, {});
-    return Request::kNone;
-  }
-  // A command that is sent again because its answer was lost must not act twice.
-  for (const CommandAck& answered : answered_) {
-    if (answered.session != c.session || answered.sequence != c.sequence) continue;
-    out_.ack = answered;
-    return Request::kNone;
-  }
-  if (c.request == Request::kNavigate &&
-      (missions_.loaded() == nullptr || missions_.loaded()->hash != c.mission_hash)) {
-    answer(c.session, c.sequence, AckResult::kBadMission, {});
-    return Request::kNone;
-  }
-  return c.request;
-}
-
-void Station::acknowledge(const OperatorCommand& command) noexcept {
-  const SupervisorOutput& s = out_.supervision;
-  answer(command.session, command.sequence,
-         s.request_taken ? AckResult::kAccepted : AckResult::kRefused, s.refusal);
-}
-
-void Station::answer(std::int64_t session, std::int32_t sequence, AckResult result,
-                     ConditionSet reasons) noexcept {
-  out_.ack = CommandAck{session, sequence, result, reasons, 0};
-  answered_[next_answer_] = *out_.ack;
-  next_answer_ = (next_answer_ + 1) % answered_.size();
-  if (result != AckResult::kAccepted) ++commands_refused_;
+/// New numbers for every part that is not made at start-up; on the ground, where nothing is under
+/// way. Guidance is made anew in its place, for its parts refer to each other.
+void Station::reconfigure(Time now) noexcept {
+  localizer_ = Localizer(config_.localizer);
+  localizer_.reset(config_.guidance.home_position_m, now);
+  supervisor_ = Supervisor(config_.supervisor);
+  std::destroy_at(&guidance_);
+  std::construct_at(&guidance_, config_.guidance, config_.executor, config_.control.composite.pole,
+                    config_.limits);
+  dead_zone_ = ReelDeadZone(config_.reel_dead_zone);
+  gate_ = CommandGate(config_.gate, config_.limits);
 }
 
 void Station::enterMode(Time now) noexcept {

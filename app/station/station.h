@@ -16,7 +16,7 @@
 #include "app/station/events.h"
 #include "app/station/guidance.h"
 #include "app/station/mission_store.h"
-#include "app/station/operator_command.h"
+#include "app/station/operator_dialogue.h"
 #include "app/station/station_config.h"
 #include "common/estimate.h"
 #include "common/vehicle.h"
@@ -33,6 +33,9 @@ struct StepInput {
   Time now{};
   SensorFrame sensors;
   std::optional<OperatorCommand> command;
+  std::optional<Heartbeat> heartbeat;  ///< Of the operator who holds the lease.
+  std::optional<Sticks> sticks;        ///< The same operator's.
+  std::optional<TurnedAway> turned_away;
   const tautline::mission_chunk_t* chunk{
       nullptr};                     ///< A piece of a mission, or none; used during the call only.
   std::int32_t missed_in_a_row{0};  ///< Ticks that the loop has missed, as of the last cycle.
@@ -50,6 +53,7 @@ struct StepOutput {
   std::uint64_t loaded_hash{0};  ///< Of the mission that waits to be flown, 0 = none.
   int mission_items{0};          ///< Its waypoints received so far.
   std::optional<CommandAck> ack;
+  const OperatorDialogue* operators{nullptr};  ///< The station's own; never null after a step.
   std::array<StationEvent, 8> events{};
   int event_count{0};
 };
@@ -62,15 +66,12 @@ class Station {
   /// One cycle. `in.now` must not go back. Real-time safe: no allocation, no locks, no exceptions.
   [[nodiscard]] const StepOutput& step(const StepInput& in) noexcept;
 
-  /// Commands refused since start.
-  [[nodiscard]] std::int64_t commandsRefused() const noexcept { return commands_refused_; }
+  /// Who may command.
+  [[nodiscard]] const Lease& lease() const noexcept { return dialogue_.authority().lease(); }
 
  private:
   [[nodiscard]] ConditionSet assess(const StepInput& in, const Estimate& estimate) noexcept;
-  [[nodiscard]] Request takeCommand(const StepInput& in) noexcept;
-  void acknowledge(const OperatorCommand& command) noexcept;
-  void answer(std::int64_t session, std::int32_t sequence, AckResult result,
-              ConditionSet reasons) noexcept;
+  void reconfigure(Time now) noexcept;
   void enterMode(Time now) noexcept;
   [[nodiscard]] VehicleCommand control(Duration dt, const GuidanceOutput& guidance) noexcept;
   [[nodiscard]] VehicleCommand override(const VehicleCommand& gated) noexcept;
@@ -87,14 +88,11 @@ class Station {
   ReelDeadZone dead_zone_;
   CommandGate gate_;
   MissionStore missions_;
+  OperatorDialogue dialogue_;
 
   std::optional<Time> last_step_;
   VehicleCommand last_command_;
   StepOutput out_;
-  std::array<CommandAck, 16>
-      answered_{};  ///< The last ones, so that a command sent again acts once.
-  std::size_t next_answer_{0};
-  std::int64_t commands_refused_{0};
   LinkFault link_fault_{LinkFault::kNone};  ///< Last told.
 };
 

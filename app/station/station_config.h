@@ -25,6 +25,7 @@
 #include "drivers/serial_port.h"
 #include "drivers/tautline_device.h"
 #include "estimation/localizer.h"
+#include "supervision/authority_config.h"
 #include "supervision/supervisor.h"
 
 namespace tautline {
@@ -71,6 +72,7 @@ struct CoreConfig {
   GuidanceConfig guidance;
   LocalizerConfig localizer;
   SupervisorConfig supervisor;
+  AuthorityConfig authority;
   ExecutorConfig executor;
   ControlConfig control;
   VehicleLimits limits;
@@ -83,6 +85,7 @@ struct CoreConfig {
     v.section("guidance", guidance);
     v.section("localizer", localizer);
     v.section("supervisor", supervisor);
+    v.section("authority", authority);
     v.section("executor", executor);
     v.section("control", control);
     v.section("limits", limits);

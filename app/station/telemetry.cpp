@@ -37,15 +37,6 @@ Telemetry::Telemetry(TelemetrySink& sink, RunMode run_mode, Duration unix_offset
   setPlace("");
 }
 
-template <class Message>
-void Telemetry::send(const char* channel, Message& message, Time now,
-                     std::span<std::uint8_t> buffer) noexcept {
-  message.utime = toMicroseconds(now + unix_offset_);
-  const int size = message.encode(buffer.data(), 0, as<int>(buffer.size()));
-  if (size < 0 || !sink_.publish(channel, message.utime, buffer.first(as<std::size_t>(size))))
-    ++errors_;
-}
-
 void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
   sendInput(in);
   if (out.ack) {
@@ -58,6 +49,8 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
     send(channel::kCommandAck, ack, in.now);
   }
   for (int i = 0; i < out.event_count; ++i) sendEvent(in.now, out.events[as<std::size_t>(i)]);
+
+  publishOperators(in, out);
 
   const bool due = in.now >= next_state_;
   if (due || out.command.action != VehicleAction::kNone) sendCommand(in.now, out.command);
@@ -184,13 +177,9 @@ void Telemetry::sendMission(Time now, const StepOutput& out) noexcept {
 }
 
 void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
-  const EventText& text = textOf(event.code);
-  event_.severity = as<std::int8_t>(text.severity);
-  event_.code = as<std::int32_t>(event.code);
   // What follows stays inside the reserved capacity: no allocation.
-  const std::string& place = vehicle_.link_place;
   event_.text.clear();
-  appendText(event_.text, text.text, place);
+  appendText(event_.text, textOf(event.code).text, vehicle_.link_place);
   if (event.code == EventCode::kModeChanged) {
     event_.text.append(nameOf(event.mode, kModeNames));
     const char* separator = " because of ";
@@ -200,14 +189,21 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
       separator = " ";
     }
   }
+  sendText(now, event.code);
+}
+
+/// event_.text is there already.
+void Telemetry::sendText(Time now, EventCode code) noexcept {
+  const EventText& text = textOf(code);
+  event_.severity = as<std::int8_t>(text.severity);
+  event_.code = as<std::int32_t>(code);
   event_.reaction.assign(text.reaction);
   event_.remedy.clear();
-  appendText(event_.remedy, text.remedy, place);
+  appendText(event_.remedy, text.remedy, vehicle_.link_place);
   send(channel::kEvent, event_, now);
 }
 
-void Telemetry::publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s,
-                            std::int64_t commands_refused) noexcept {
+void Telemetry::publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s) noexcept {
   tautline::loop_stats_t m{};
   m.period_s = toSeconds(period);
   m.cycles = s.cycles;
@@ -219,7 +215,7 @@ void Telemetry::publishLoop(Time now, Duration period, const LoopStatistics::Sna
   m.work_max_s = s.work_max;
   m.work_max_ever_s = s.work_max_ever;
   m.publish_errors = errors_;
-  m.commands_refused = commands_refused;
+  m.commands_refused = refused_;
   send(channel::kLoopStats, m, now);
 }
 
@@ -228,7 +224,10 @@ void Telemetry::setParams(const std::string& program, const std::string& version
   params_.program = program;
   params_.version = version;
   params_.toml = toml;
-  params_buffer_.resize(as<std::size_t>(params_.getEncodedSize()));
+  // A number that `param set` changes may become longer text.
+  constexpr std::size_t kRoomForChanges = 2048;
+  params_.toml.reserve(toml.size() + kRoomForChanges);
+  params_buffer_.resize(as<std::size_t>(params_.getEncodedSize()) + kRoomForChanges);
 }
 
 void Telemetry::setPlace(const std::string& place) {

@@ -11,13 +11,16 @@
 #include <string>
 #include <vector>
 
+#include <tautline/authority_t.hpp>
 #include <tautline/command_ack_t.hpp>
 #include <tautline/command_t.hpp>
 #include <tautline/estimate_t.hpp>
 #include <tautline/event_t.hpp>
+#include <tautline/faults_t.hpp>
 #include <tautline/loop_stats_t.hpp>
 #include <tautline/mission_status_t.hpp>
 #include <tautline/params_t.hpp>
+#include <tautline/safety_t.hpp>
 #include <tautline/station_input_t.hpp>
 #include <tautline/station_state_t.hpp>
 #include <tautline/tether_state_t.hpp>
@@ -55,8 +58,11 @@ class Telemetry {
   void publish(const StepInput& in, const StepOutput& out) noexcept;
 
   /// Once a second.
-  void publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s,
-                   std::int64_t commands_refused) noexcept;
+  void publishLoop(Time now, Duration period, const LoopStatistics::Snapshot& s) noexcept;
+
+  /// Messages refused before the core saw them, to be told with its own refusals; `counts` outlives
+  /// the telemetry.
+  void addRefusalsOf(const AckCounts& counts) noexcept { inbox_counts_ = &counts; }
 
   /// What publishParams() says. Not real-time safe: start-up only.
   void setParams(const std::string& program, const std::string& version, const std::string& toml);
@@ -74,7 +80,13 @@ class Telemetry {
  private:
   template <class Message>
   void send(const char* channel, Message& message, Time now,
-            std::span<std::uint8_t> buffer) noexcept;
+            std::span<std::uint8_t> buffer) noexcept {
+    message.utime = unixMicroseconds(now);
+    const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
+    if (size < 0 ||
+        !sink_.publish(channel, message.utime, buffer.first(static_cast<std::size_t>(size))))
+      ++errors_;
+  }
   template <class Message>
   void send(const char* channel, Message& message, Time now) noexcept {
     send(channel, message, now, buffer_);
@@ -87,12 +99,34 @@ class Telemetry {
   void sendCommand(Time now, const VehicleCommand& command) noexcept;
   void sendMission(Time now, const StepOutput& out) noexcept;
   void sendEvent(Time now, const StationEvent& event) noexcept;
+  void sendText(Time now, EventCode code) noexcept;
+
+  // In operator_telemetry.cpp: what operators are told of their own dealings.
+  void publishOperators(const StepInput& in, const StepOutput& out) noexcept;
+  void sendAudit(Time now, const AuditRecord& audit) noexcept;
+  void sendLeaseChange(Time now, const LeaseChange& change) noexcept;
+  void sendParameterChange(Time now, const ParameterChange& change,
+                           const OperatorName& name) noexcept;
+  void sendAuthority(Time now, const OperatorDialogue& operators) noexcept;
+  void sendFaults(Time now, const FaultLog& faults) noexcept;
+  void sendSafety(const StepInput& in, const StepOutput& out) noexcept;
+  void patchParams(const ParameterChange& change) noexcept;
+  [[nodiscard]] std::int64_t unixMicroseconds(Time t) const noexcept {
+    return toMicroseconds(t + unix_offset_);
+  }
 
   TelemetrySink& sink_;
   RunMode run_mode_;
   Duration unix_offset_;
   Duration state_period_;
   Time next_state_{};
+  Time next_authority_{};
+  Time next_faults_{};
+  Time next_safety_{};
+  bool fault_was_latched_{false};
+  std::size_t faults_told_{0};
+  const AckCounts* inbox_counts_{nullptr};
+  std::int64_t refused_{0};
   std::int64_t errors_{0};
   std::array<std::uint8_t, 4096> buffer_{};
 

@@ -201,7 +201,7 @@ bool stepAgain(const RecordedFlight& flight, TelemetrySink& sink, LcmLink* lcm, 
     const StepOutput* out = nullptr;
     const Time begin = monotonicNow();
     stages[Stages::kRead].time([&] { device.read(in.now, frame); });
-    if (lcm != nullptr) stages[Stages::kPoll].time([&] { lcm->poll(); });
+    if (lcm != nullptr) stages[Stages::kPoll].time([&] { lcm->poll(in.now, 0); });
     stages[Stages::kStep].time([&] { out = &station->step(in); });
     stages[Stages::kWrite].time([&] { device.write(in.now, out->command); });
     stages[Stages::kTelemetry].time([&] { telemetry.publish(in, *out); });
