@@ -13,6 +13,7 @@ inline constexpr const char* kVehicleState = "VEHICLE_STATE";
 inline constexpr const char* kEstimate = "ESTIMATE";
 inline constexpr const char* kCommand = "COMMAND";
 inline constexpr const char* kMissionStatus = "MISSION_STATUS";
+inline constexpr const char* kLogStatus = "LOG_STATUS";
 inline constexpr const char* kLoopStats = "LOOP_STATS";
 inline constexpr const char* kEvent = "EVENT";
 inline constexpr const char* kOperatorCommand = "OPERATOR_COMMAND";
