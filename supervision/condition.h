@@ -64,6 +64,7 @@ enum class Condition : std::uint8_t {
   kTetherElsewhere,
   kMissionDone,
   kMissionFailed,
+  kNoWayBack,
   kTimeInMode,
   // Operator.
   kNoOperator,
@@ -103,7 +104,7 @@ struct ConditionInfo {
   const char* remedy;
 };
 
-inline constexpr std::array<ConditionInfo, 57> kConditionInfos{{
+inline constexpr auto kConditionInfos = std::to_array<ConditionInfo>({
     {Condition::kReelStale, "ENCODER_STALE", ConditionKind::kForbidsArming, "s", 0.0, 0.5,
      "no usable tether length in time", "check the reel's cable and its telemetry rate"},
     {Condition::kReelStuck, "ENCODER_STUCK", ConditionKind::kForbidsArming, "m", 0.0, 2.0,
@@ -147,7 +148,7 @@ inline constexpr std::array<ConditionInfo, 57> kConditionInfos{{
     {Condition::kTetherSnagged, "TETHER_SNAGGED", ConditionKind::kInFlight, "N", 0.0, 3.0,
      "the tether is caught: commanded, not moving, and it pulls",
      "free it by hand, or back up; do not land before"},
-    {Condition::kTetherBroken, "TETHER_BROKEN", ConditionKind::kInFlight, "N", 0.0, 3600.0,
+    {Condition::kTetherBroken, "TETHER_BROKEN", ConditionKind::kInFlight, "N", 0.0, 10.0,
      "no pull on the tether and its length does not follow", "clear the ground below"},
     {Condition::kUnplannedContact, "UNPLANNED_CONTACT", ConditionKind::kInFlight, "", 0.0, 2.0,
      "the tether touches something that the mission does not know",
@@ -171,8 +172,8 @@ inline constexpr std::array<ConditionInfo, 57> kConditionInfos{{
      "move away from it; core.fence.min_clearance_m"},
     {Condition::kBatteryLow, "BATTERY", ConditionKind::kForbidsArming, "V", 1.0, 5.0,
      "the battery is low", "land and change it"},
-    {Condition::kBatteryCritical, "BATTERY_CRITICAL", ConditionKind::kForbidsArming, "V", 1.0,
-     3600.0, "the battery is critical", "nothing to do: it lands"},
+    {Condition::kBatteryCritical, "BATTERY_CRITICAL", ConditionKind::kForbidsArming, "V", 1.0, 10.0,
+     "the battery is critical", "nothing to do: it lands"},
     {Condition::kBackupBatteryLow, "BACKUP_BATTERY", ConditionKind::kForbidsArming, "V", 1.0, 5.0,
      "the vehicle's backup battery is low", "land and charge it"},
     {Condition::kTetherPowerLost, "TETHER_POWER", ConditionKind::kForbidsArming, "", 0.3, 5.0,
@@ -203,6 +204,8 @@ inline constexpr std::array<ConditionInfo, 57> kConditionInfos{{
     {Condition::kMissionFailed, "NO_PROGRESS", ConditionKind::kInFlight, "", 0.0, 0.0,
      "the route was given up: time-out, no progress, bad contact or out of reach",
      "look whether the tether is caught; then navigate again or land"},
+    {Condition::kNoWayBack, "NO_WAY_BACK", ConditionKind::kFact, "", 0.0, 0.0,
+     "how the drone came to where it is, is not known", "`tautline land` goes straight home"},
     {Condition::kTimeInMode, "TIME_IN_MODE", ConditionKind::kFact, "s", 0.0, 0.0,
      "the present mode has lasted longer than it may", ""},
     {Condition::kNoOperator, "NO_OPERATOR", ConditionKind::kForbidsArming, "s", 0.0, 0.0,
@@ -241,7 +244,7 @@ inline constexpr std::array<ConditionInfo, 57> kConditionInfos{{
     {Condition::kFaultLatched, "FAULT_LATCHED", ConditionKind::kForbidsArming, "", 0.0, 0.0,
      "a fault of the last flight needs a look",
      "look at `tautline faults`; `tautline disarm` clears it"},
-}};
+});
 inline constexpr std::size_t kConditionCount = kConditionInfos.size();
 static_assert(kConditionCount <= 64, "a set of conditions is one word");
 

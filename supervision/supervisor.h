@@ -92,6 +92,7 @@ struct SupervisorConfig {
   double takeoff_timeout_s{30.0};
   double armed_timeout_s{120.0};
   double failsafe_timeout_s{10.0};
+  double land_timeout_s{120.0};
   template <class Visitor>
   void fields(Visitor& v) {
     v.field("takeoff_timeout_s", takeoff_timeout_s, Range{1, 600},
@@ -100,6 +101,8 @@ struct SupervisorConfig {
             "longest time in ARMED on the ground before STANDBY");
     v.field("failsafe_timeout_s", failsafe_timeout_s, Range{1, 600},
             "time in FAILSAFE before the second stage: RETURN, LAND or DESCEND by its cause");
+    v.field("land_timeout_s", land_timeout_s, Range{10, 3600},
+            "a landing without a position ends in DESCEND after this long");
   }
 };
 
@@ -145,8 +148,9 @@ struct Transition {
   Mode to;
 };
 
-/// First row that fits wins: the operator's emergency stop, then automatic rows, most severe first,
-/// then requests.
+/// The rows that happen by themselves, most severe first, then those on request. In each part the
+/// first that fits wins. A request is judged from where the first part has led; one that starts
+/// something is refused in a cycle in which the mode has changed by itself.
 [[nodiscard]] const Transition* transitionTable(int& count) noexcept;
 
 }  // namespace tautline
