@@ -2,9 +2,9 @@
 
 /// @file
 /// Solid upright prism over a simple polygon in the floor plane: distance to it, and the part of a
-/// straight line inside it. Corners are (z, x), any orientation, not necessarily convex, not closed.
-/// Real-time safe: no allocation, no locks, no exceptions; work is bounded by the square of the
-/// number of corners.
+/// straight line inside it. Corners are (z, x), any orientation, not necessarily convex, not
+/// closed. Real-time safe: no allocation, no locks, no exceptions; work is bounded by the square of
+/// the number of corners.
 
 #include <optional>
 #include <span>

@@ -8,6 +8,7 @@ namespace tautline {
 namespace channel {
 inline constexpr const char* kStationInput = "STATION_INPUT";
 inline constexpr const char* kStationState = "STATION_STATE";
+inline constexpr const char* kSafety = "SAFETY";
 inline constexpr const char* kTetherState = "TETHER_STATE";
 inline constexpr const char* kVehicleState = "VEHICLE_STATE";
 inline constexpr const char* kEstimate = "ESTIMATE";

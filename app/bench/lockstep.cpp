@@ -7,6 +7,7 @@
 #include <tautline/operator_command_t.hpp>
 #include <tautline/sim_truth_t.hpp>
 
+#include "app/station/fence_scene.h"
 #include "app/station/mission_upload.h"
 #include "app/version.h"
 #include "common/error.h"
@@ -33,6 +34,7 @@ StationConfig forBench(const LockstepConfig& config) {
   StationConfig station = config.station;
   station.run_mode = RunMode::kSim;
   station.core.guidance.home_position_m = *config.world.start;
+  if (config.map_known) station.core.fence.obstacles = fenceObstaclesOf(config.world);
   return station;
 }
 
@@ -75,6 +77,8 @@ Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
       device_(makeDevice(config_, port_, frames_.get())),
       station_(config_.core),
       sink_(sink) {
+  input_.host.run_mode = config_.run_mode;
+  input_.host.device = DeviceReality::kEmulated;
   if (sink_ == nullptr) return;
   telemetry_ = std::make_unique<Telemetry>(*sink_, config_.run_mode, Duration::zero(),
                                            fromSeconds(1.0 / config_.telemetry_rate_hz));

@@ -1,5 +1,7 @@
 #include "app/station/lcm_link.h"
 
+#include <tautline/log_status_t.hpp>
+
 #include "app/lcm_access.h"
 #include "common/error.h"
 #include "lcmtypes/channels.h"
@@ -13,6 +15,8 @@ LcmLink::LcmLink(const std::string& url) : lcm_(reachable(url)) {
       lcm_subscribe(lcm, channel::kOperatorCommand, &LcmLink::onCommand, this), kQueueCapacity);
   lcm_subscription_set_queue_capacity(
       lcm_subscribe(lcm, channel::kMissionChunk, &LcmLink::onChunk, this), kQueueCapacity);
+  lcm_subscription_set_queue_capacity(
+      lcm_subscribe(lcm, channel::kLogStatus, &LcmLink::onLogStatus, this), kQueueCapacity);
 }
 
 bool LcmLink::publish(const char* channel, std::int64_t /*utime*/,
@@ -25,6 +29,7 @@ bool LcmLink::publish(const char* channel, std::int64_t /*utime*/,
 void LcmLink::poll() noexcept {
   command_.reset();
   chunk_.reset();
+  recorder_.reset();
   for (int i = 0; i < kMaxMessagesPerPoll && !command_ && !chunk_; ++i) {
     if (lcm_handle_timeout(lcm_.getUnderlyingLCM(), 0) <= 0) return;
   }
@@ -46,6 +51,14 @@ void LcmLink::onChunk(const lcm_recv_buf_t* bytes, const char* /*channel*/, void
   tautline::mission_chunk_t m;
   if (m.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0) return;
   static_cast<LcmLink*>(self)->chunk_ = m;
+}
+
+void LcmLink::onLogStatus(const lcm_recv_buf_t* bytes, const char* /*channel*/,
+                          void* self) noexcept {
+  tautline::log_status_t m;
+  if (m.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0) return;
+  static_cast<LcmLink*>(self)->recorder_ =
+      RecorderStatus{{}, m.recording != 0, m.disk_free_bytes, m.disk_limit_bytes};
 }
 
 }  // namespace tautline

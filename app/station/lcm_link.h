@@ -15,6 +15,7 @@
 
 #include "app/station/operator_command.h"
 #include "app/station/telemetry.h"
+#include "supervision/detect/host_watch.h"
 
 namespace tautline {
 
@@ -38,6 +39,8 @@ class LcmLink final : public TelemetrySink {
   [[nodiscard]] const tautline::mission_chunk_t* chunk() const noexcept {
     return chunk_ ? &*chunk_ : nullptr;
   }
+  /// What a recorder said, if it did since the poll() before; `heard` is left to the caller.
+  [[nodiscard]] const std::optional<RecorderStatus>& recorder() const noexcept { return recorder_; }
 
  private:
   // Raw handlers of the C library: the C++ one makes a std::string of the channel for every
@@ -45,12 +48,15 @@ class LcmLink final : public TelemetrySink {
   static void onCommand(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
   static void onChunk(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
 
+  static void onLogStatus(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
+
   static constexpr int kMaxMessagesPerPoll = 8;
   static constexpr int kQueueCapacity = 64;
 
   lcm::LCM lcm_;
   std::optional<OperatorCommand> command_;
   std::optional<tautline::mission_chunk_t> chunk_;
+  std::optional<RecorderStatus> recorder_;
 };
 
 }  // namespace tautline

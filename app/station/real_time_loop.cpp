@@ -14,6 +14,8 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
                                       const volatile std::sig_atomic_t& stop) {
   LoopStatistics statistics;
   StepInput in;
+  in.host = parts.host;
+  in.host.clock_synchronized = clockSynchronized();
   TickGrid grid(period, monotonicNow() + period);
   Time next_statistics = grid.next();
   int until_params = 0;
@@ -23,8 +25,16 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
     in.now = monotonicNow();  // the one reading of the clock that the core sees
     const Duration lateness = in.now - grid.next();
 
+    in.host.lateness = lateness;
+    in.host.unix_offset = unixOffset();
+    if (parts.plugged != nullptr) in.host.device = parts.plugged->reality();
+
     parts.device.read(in.now, in.sensors);
     parts.lcm.poll();
+    if (parts.lcm.recorder()) {
+      in.host.recorder = parts.lcm.recorder();
+      in.host.recorder->heard = in.now;
+    }
     in.command = parts.lcm.command();
     in.chunk = parts.lcm.chunk();
     const StepOutput& out = parts.station.step(in);
@@ -36,6 +46,7 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
       parts.telemetry.publishLoop(in.now, period, statistics.snapshot(),
                                   parts.station.commandsRefused());
       statistics.startWindow();
+      in.host.clock_synchronized = clockSynchronized();
       if (until_params == 0) {
         parts.telemetry.publishParams(in.now);
         until_params = kParamsEvery;

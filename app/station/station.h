@@ -13,6 +13,7 @@
 
 #include <tautline/mission_chunk_t.hpp>
 
+#include "app/station/condition_monitor.h"
 #include "app/station/events.h"
 #include "app/station/guidance.h"
 #include "app/station/mission_store.h"
@@ -36,6 +37,7 @@ struct StepInput {
   const tautline::mission_chunk_t* chunk{
       nullptr};                     ///< A piece of a mission, or none; used during the call only.
   std::int32_t missed_in_a_row{0};  ///< Ticks that the loop has missed, as of the last cycle.
+  HostFacts host;
 };
 
 /// All that a cycle says.
@@ -44,13 +46,14 @@ struct StepOutput {
   Estimate estimate;
   Anchor anchor;
   int contact_id{kReelContact};
-  ConditionSet conditions;
+  ConditionSet conditions;  ///< What counts, after guard and recovery times.
+  Findings findings;        ///< What is the case in this cycle, with measured values and limits.
   SupervisorOutput supervision;
   ExecutorStatus mission;
   std::uint64_t loaded_hash{0};  ///< Of the mission that waits to be flown, 0 = none.
   int mission_items{0};          ///< Its waypoints received so far.
   std::optional<CommandAck> ack;
-  std::array<StationEvent, 8> events{};
+  std::array<StationEvent, 16> events{};
   int event_count{0};
 };
 
@@ -66,7 +69,7 @@ class Station {
   [[nodiscard]] std::int64_t commandsRefused() const noexcept { return commands_refused_; }
 
  private:
-  [[nodiscard]] ConditionSet assess(const StepInput& in, const Estimate& estimate) noexcept;
+  [[nodiscard]] ConditionSet assess(const StepInput& in) noexcept;
   [[nodiscard]] Request takeCommand(const StepInput& in) noexcept;
   void acknowledge(const OperatorCommand& command) noexcept;
   void answer(std::int64_t session, std::int32_t sequence, AckResult result,
@@ -81,6 +84,7 @@ class Station {
 
   CoreConfig config_;
   Localizer localizer_;
+  ConditionMonitor monitor_;
   Supervisor supervisor_;
   Guidance guidance_;
   std::unique_ptr<Controller> controller_;

@@ -25,6 +25,8 @@
 #include "drivers/serial_port.h"
 #include "drivers/tautline_device.h"
 #include "estimation/localizer.h"
+#include "supervision/detect/detect_config.h"
+#include "supervision/detect/fence.h"
 #include "supervision/supervisor.h"
 
 namespace tautline {
@@ -65,6 +67,8 @@ struct GuidanceConfig {
 struct CoreConfig {
   GuidanceConfig guidance;
   LocalizerConfig localizer;
+  DetectConfig detect;
+  FenceConfig fence;
   SupervisorConfig supervisor;
   ExecutorConfig executor;
   ControlConfig control;
@@ -77,6 +81,8 @@ struct CoreConfig {
   void fields(Visitor& v) {
     v.section("guidance", guidance);
     v.section("localizer", localizer);
+    v.section("detect", detect);
+    v.section("fence", fence);
     v.section("supervisor", supervisor);
     v.section("executor", executor);
     v.section("control", control);

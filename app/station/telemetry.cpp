@@ -1,6 +1,7 @@
 #include "app/station/telemetry.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "app/station/input_message.h"
@@ -8,6 +9,8 @@
 
 namespace tautline {
 namespace {
+
+constexpr Duration kSafetyPeriod = std::chrono::milliseconds(500);
 
 void put(double (&out)[3], const Eigen::Vector3d& v) noexcept {
   for (int i = 0; i < 3; ++i) out[i] = v[i];
@@ -27,6 +30,22 @@ double yawOf(const Eigen::Quaterniond& R_WB) noexcept {
 template <class Int, class T>
 Int as(T value) noexcept {
   return static_cast<Int>(value);
+}
+
+/// " (0.62 s, limit 0.50)" where something was measured. Stays inside the text's room: no
+/// allocation.
+void appendMeasured(std::string& text, const StationEvent& event, const char* unit) noexcept {
+  if (event.value == 0.0 && event.limit == 0.0) return;
+  const auto append = [&text](double x) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.begin(), digits.end(), x, std::chars_format::general, 4);
+    text.append(digits.data(), as<std::size_t>(end.ptr - digits.data()));
+  };
+  text.append(" (");
+  append(event.value);
+  text.append(" ").append(unit).append(", limit ");
+  append(event.limit);
+  text.append(")");
 }
 
 }  // namespace
@@ -57,6 +76,7 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
     ack.detail = out.ack->detail;
     send(channel::kCommandAck, ack, in.now);
   }
+  if (in.now >= next_safety_ || out.conditions != safety_told_) sendSafety(in.now, out);
   for (int i = 0; i < out.event_count; ++i) sendEvent(in.now, out.events[as<std::size_t>(i)]);
 
   const bool due = in.now >= next_state_;
@@ -92,6 +112,20 @@ void Telemetry::sendStation(Time now, const StepOutput& out) noexcept {
   send(channel::kStationState, m, now);
 }
 
+void Telemetry::sendSafety(Time now, const StepOutput& out) noexcept {
+  next_safety_ = now + kSafetyPeriod;
+  safety_told_ = out.conditions;
+  tautline::safety_t m{};
+  static_assert(kConditionCount <= tautline::safety_t::ROOM);
+  m.conditions = as<std::int64_t>(out.conditions.bits());
+  m.raised = as<std::int64_t>(out.findings.raised.bits());
+  m.arming_blockers =
+      as<std::int64_t>((out.conditions & conditionsOf(ConditionKind::kForbidsArming)).bits());
+  std::copy(out.findings.value.begin(), out.findings.value.end(), m.value);
+  std::copy(out.findings.limit.begin(), out.findings.limit.end(), m.limit);
+  send(channel::kSafety, m, now);
+}
+
 void Telemetry::sendTether(const StepInput& in, const StepOutput& out) noexcept {
   const SensorFrame& f = in.sensors;
   tautline::tether_state_t m{};
@@ -119,6 +153,7 @@ void Telemetry::sendVehicle(const StepInput& in) noexcept {
   m.phase = as<std::int8_t>(f.vehicle.value.phase);
   m.flight_mode = f.vehicle.value.flight_mode;
   m.flags = f.vehicle.value.flags;
+  m.protocol = as<std::int8_t>(f.vehicle.value.protocol);
   put(m.attitude_wxyz, f.attitude.value.R_WB);
   m.yaw_rad = yawOf(f.attitude.value.R_WB);
   m.gimbal_pitch_rad = f.gimbal.value.pitch;
@@ -185,6 +220,8 @@ void Telemetry::sendMission(Time now, const StepOutput& out) noexcept {
 
 void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
   const EventText& text = textOf(event.code);
+  const ConditionInfo& info = infoOf(event.condition);
+  const bool came = event.code == EventCode::kConditionCame;
   event_.severity = as<std::int8_t>(text.severity);
   event_.code = as<std::int32_t>(event.code);
   // assign() and append() stay inside the reserved capacity: no allocation.
@@ -198,8 +235,16 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
       separator = " ";
     }
   }
+  if (came || event.code == EventCode::kConditionWent) {
+    event_.text.append(info.name).append(": ").append(info.text);
+    event_.code = kFirstConditionCode + 2 * as<std::int32_t>(event.condition) + (came ? 0 : 1);
+  }
+  if (came) {
+    if (info.kind == ConditionKind::kWarns) event_.severity = as<std::int8_t>(Severity::kWarning);
+    appendMeasured(event_.text, event, info.unit);
+  }
   event_.reaction.assign(text.reaction);
-  event_.remedy.assign(text.remedy);
+  event_.remedy.assign(came ? info.remedy : text.remedy);
   send(channel::kEvent, event_, now);
 }
 

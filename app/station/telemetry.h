@@ -18,6 +18,7 @@
 #include <tautline/loop_stats_t.hpp>
 #include <tautline/mission_status_t.hpp>
 #include <tautline/params_t.hpp>
+#include <tautline/safety_t.hpp>
 #include <tautline/station_input_t.hpp>
 #include <tautline/station_state_t.hpp>
 #include <tautline/tether_state_t.hpp>
@@ -77,6 +78,7 @@ class Telemetry {
   }
   void sendInput(const StepInput& in) noexcept;
   void sendStation(Time now, const StepOutput& out) noexcept;
+  void sendSafety(Time now, const StepOutput& out) noexcept;
   void sendTether(const StepInput& in, const StepOutput& out) noexcept;
   void sendVehicle(const StepInput& in) noexcept;
   void sendEstimate(Time now, const StepOutput& out) noexcept;
@@ -89,6 +91,8 @@ class Telemetry {
   Duration unix_offset_;
   Duration state_period_;
   Time next_state_{};
+  Time next_safety_{};
+  ConditionSet safety_told_;
   std::int64_t errors_{0};
   std::array<std::uint8_t, 4096> buffer_{};
 

@@ -65,7 +65,8 @@ std::string tomlText(const Eigen::Vector3d& value) {
 std::string tomlText(std::span<const Eigen::Vector2d> points) {
   std::string text;
   for (const Eigen::Vector2d& p : points)
-    text += (text.empty() ? "" : ", ") + std::string("[") + tomlText(p.x()) + ", " + tomlText(p.y()) + "]";
+    text += (text.empty() ? "" : ", ") + std::string("[") + tomlText(p.x()) + ", " +
+            tomlText(p.y()) + "]";
   return "[" + text + "]";
 }
 

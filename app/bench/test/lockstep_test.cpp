@@ -12,9 +12,9 @@
 
 #include "app/bench/log_sink.h"
 #include "app/bench/replay.h"
+#include "app/bench/test/bench_flight.h"
 #include "common/error.h"
 #include "common/testing/malloc_guard.h"
-#include "common/toml/config_file.h"
 
 namespace tautline::bench {
 namespace {
@@ -22,21 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-const fs::path kConfig = fs::path(TAUTLINE_SOURCE_DIR) / "config";
-
-LockstepConfig benchConfig(const std::string& scene, std::uint64_t seed) {
-  LockstepConfig config;
-  config.station = loadConfig<StationConfig>(kConfig / "station.toml");
-  config.sim = loadConfig<sim::SimConfig>(kConfig / "sim.toml");
-  config.world = sceneInWorld(readScene(kConfig / "scenes" / (scene + ".scene.toml")));
-  config.seed = seed;
-  return config;
-}
-
-Mission mission(const std::string& name) {
-  return readMission(kConfig / "missions" / (name + ".mission.toml"));
-}
 
 fs::path temporary(const std::string& name) {
   return fs::path(::testing::TempDir()) / ("tautline_lockstep_" + name);
@@ -258,12 +243,6 @@ TEST(Lockstep, NavigateWithoutThatMissionIsRefused) {
   ASSERT_TRUE(out.ack);
   EXPECT_EQ(out.ack->result, AckResult::kBadMission);
   EXPECT_EQ(flight.mode(), Mode::kHold);
-}
-
-LockstepConfig busConfig(const std::string& scene, std::uint64_t seed) {
-  LockstepConfig config = benchConfig(scene, seed);
-  config.station = loadConfig<StationConfig>(kConfig / "station_tautline_serial.toml");
-  return config;
 }
 
 TEST(TautlineBus, FliesAMissionInLockstep) {
