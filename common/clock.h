@@ -3,6 +3,8 @@
 /// @file
 /// The one place that reads the machine's clocks. Everything else gets its time as an argument.
 
+#include <sys/timex.h>
+
 #include "common/time.h"
 
 namespace tautline {
@@ -18,6 +20,13 @@ namespace tautline {
   const auto unix_now =
       std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
   return unix_now - monotonicNow().time_since_epoch();
+}
+
+/// Whether the kernel holds the wall clock for synchronized (NTP, PTP). Real-time safe: no
+/// allocation, no locks, no exceptions.
+[[nodiscard]] inline bool clockSynchronized() noexcept {
+  timex query{};
+  return adjtimex(&query) != TIME_ERROR;
 }
 
 }  // namespace tautline

@@ -17,8 +17,10 @@
 ///
 /// A Visitor has
 ///   field(key, double|int|bool|std::string|Eigen::Vector3d&, [Range,] doc)
+///   field(key, FixedList<Eigen::Vector2d, N>&, Range, doc)
 ///   choice(key, Enum&, const std::array<EnumName<Enum>, N>&, doc)
 ///   section(key, Struct&)
+///   rows(key, FixedList<Struct, N>&, doc)      an array of tables
 /// Readers and writers live in common/toml; this header has no dependency.
 
 #include <limits>

@@ -78,11 +78,15 @@ inline constexpr std::array<EnumName<VehiclePhase>, 6> kVehiclePhaseNames{
      {VehiclePhase::kStopped, "stopped"},
      {VehiclePhase::kFault, "fault"}}};
 
+/// Whose codes a vehicle's flight mode and flags are.
+enum class VehicleProtocol : std::uint8_t { kUnknown, kFotokite, kTautline };
+
 struct VehicleReading {
   VehiclePhase phase{VehiclePhase::kUnknown};
   std::uint8_t flight_mode{0};       ///< Device's own code (docs/devices.md).
   std::uint16_t flags{0};            ///< Device's own flag bits, 0 = all good.
-  double backup_battery_voltage{0};  ///< [V]
+  double backup_battery_voltage{0};  ///< [V], 0 = not sensed.
+  VehicleProtocol protocol{VehicleProtocol::kUnknown};
 };
 
 struct GroundReading {

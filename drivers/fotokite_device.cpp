@@ -143,7 +143,8 @@ void FotokiteDevice::accept(Time now, const fotokite::ParsedLine& line,
            VehicleReading{.phase = phaseOf(flight->mode),
                           .flight_mode = flight->mode,
                           .flags = flight->flags,
-                          .backup_battery_voltage = flight->backup_battery_voltage});
+                          .backup_battery_voltage = flight->backup_battery_voltage,
+                          .protocol = VehicleProtocol::kFotokite});
   }
 }
 

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/fields.h"
+
 namespace tautline::fotokite {
 
 inline constexpr int kDefaultBaud = 115200;  ///< 8N1. The device is USB CDC-ACM and takes any rate.
@@ -106,6 +108,18 @@ enum class FlightMode : std::uint8_t {
   kNoTetherPower = 54,
   kHardKill = 55,
 };
+inline constexpr std::array<EnumName<FlightMode>, 11> kFlightModeNames{
+    {{FlightMode::kIdle, "IDLE"},
+     {FlightMode::kAngle, "ANGLE"},
+     {FlightMode::kAngleRate, "ANGLE_RATE"},
+     {FlightMode::kMotorLowLevel, "MOTOR_LOW_LEVEL"},
+     {FlightMode::kEmergencyLand, "EMERGENCY_LAND"},
+     {FlightMode::kMotorStopRestart, "MOTOR_STOP_RESTART"},
+     {FlightMode::kTimeout, "TIMEOUT"},
+     {FlightMode::kMotorStopDisable, "MOTOR_STOP_DISABLE"},
+     {FlightMode::kBatteryTooLow, "BATTERY_TOO_LOW"},
+     {FlightMode::kNoTetherPower, "NO_TETHER_POWER"},
+     {FlightMode::kHardKill, "HARD_KILL"}}};
 
 /// Last field of !FlightStatus, a bit set.
 enum FlightFlag : std::uint16_t {
@@ -123,5 +137,19 @@ enum FlightFlag : std::uint16_t {
   kForceSensorTemperatureInvalid = 1U << 11U,
   kFlyawayCandidate = 1U << 12U,
 };
+inline constexpr std::array<EnumName<FlightFlag>, 13> kFlightFlagNames{
+    {{kMissedTick, "MISSED_TICK"},
+     {kI2cError, "I2C_ERROR"},
+     {kCriticalBattery, "CRIT_LOW_BATT"},
+     {kNoSyncCommands, "NO_SYNC_CMDS"},
+     {kLowLaunchAngle, "LOW_LAUNCH_ANGLE"},
+     {kMotorError, "MOTOR_ERROR"},
+     {kLowBattery, "LOW_BATT"},
+     {kLowBackupBattery, "LOW_BACKUP_BATT"},
+     {kEmergencyLandFlag, "EMERGENCY_LAND"},
+     {kNoTetherDetected, "NO_TETHER_DETECTED"},
+     {kHardKillFlag, "HARD_KILL"},
+     {kForceSensorTemperatureInvalid, "OPTOFORCE_TEMP_INVALID"},
+     {kFlyawayCandidate, "FLYAWAY_CANDIDATE"}}};
 
 }  // namespace tautline::fotokite

@@ -73,7 +73,7 @@ SerialStatus configure(int fd, const SerialConfig& config, int& error) noexcept 
 }
 
 /// Unix98 pseudo terminals have the device majors 136 to 143.
-bool isPseudoTerminal(int fd) noexcept {
+bool isTerminalOfProgram(int fd) noexcept {
   struct stat status {};
   return fstat(fd, &status) == 0 && S_ISCHR(status.st_mode) && major(status.st_rdev) >= 136 &&
          major(status.st_rdev) <= 143;
@@ -149,7 +149,7 @@ SerialStatus SerialPort::tryOpen() noexcept {
     // Opening something that is no device at all fails in its own ways.
     return error_ == EISDIR ? SerialStatus::kNotATty : statusOf(error_);
   }
-  const SerialStatus status = config_.pseudo_terminal_only && !isPseudoTerminal(fd)
+  const SerialStatus status = config_.pseudo_terminal_only && !isTerminalOfProgram(fd)
                                   ? SerialStatus::kRealDevice
                                   : configure(fd, config_, error_);
   if (status != SerialStatus::kOpen) {
@@ -158,6 +158,7 @@ SerialStatus SerialPort::tryOpen() noexcept {
   }
   fd_ = fd;
   socket_ = false;
+  pseudo_terminal_ = isTerminalOfProgram(fd);
   if (was_connected_) ++counters_.reconnects;
   was_connected_ = true;
   return status;

@@ -78,6 +78,9 @@ class SerialPort final : public BytePort {
   /// Why the last attempt to open failed, or kUnplugged, or kOpen.
   [[nodiscard]] SerialStatus status() const noexcept { return status_; }
 
+  /// While connected: the far end is a program, not a machine.
+  [[nodiscard]] bool isPseudoTerminal() const noexcept { return pseudo_terminal_; }
+
  private:
   [[nodiscard]] SerialStatus tryOpen() noexcept;
   void flush() noexcept;
@@ -90,6 +93,7 @@ class SerialPort final : public BytePort {
   bool socket_{false};  ///< fd_ is a socket: written with send(), which raises no SIGPIPE.
   int error_{0};        ///< errno of the last failed attempt.
   bool was_connected_{false};
+  bool pseudo_terminal_{false};
   SerialStatus status_{SerialStatus::kNoSuchDevice};
   BackOff back_off_;
 };

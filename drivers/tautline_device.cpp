@@ -157,7 +157,8 @@ void TautlineDevice::use(const BusFrame& message, const bus::Parsed& parsed,
            VehicleReading{.phase = phaseOf(vehicle->mode),
                           .flight_mode = static_cast<std::uint8_t>(vehicle->mode),
                           .flags = vehicle->flags,
-                          .backup_battery_voltage = 0.0});
+                          .backup_battery_voltage = 0.0,
+                          .protocol = VehicleProtocol::kTautline});
     update(frame.gimbal, time, GimbalReading{.pitch = vehicle->gimbal_pitch});
     update(frame.ground, time,
            GroundReading{.mode = 0, .battery_voltage = vehicle->battery_voltage});

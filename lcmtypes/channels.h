@@ -8,11 +8,13 @@ namespace tautline {
 namespace channel {
 inline constexpr const char* kStationInput = "STATION_INPUT";
 inline constexpr const char* kStationState = "STATION_STATE";
+inline constexpr const char* kSafety = "SAFETY";
 inline constexpr const char* kTetherState = "TETHER_STATE";
 inline constexpr const char* kVehicleState = "VEHICLE_STATE";
 inline constexpr const char* kEstimate = "ESTIMATE";
 inline constexpr const char* kCommand = "COMMAND";
 inline constexpr const char* kMissionStatus = "MISSION_STATUS";
+inline constexpr const char* kLogStatus = "LOG_STATUS";
 inline constexpr const char* kLoopStats = "LOOP_STATS";
 inline constexpr const char* kEvent = "EVENT";
 inline constexpr const char* kOperatorCommand = "OPERATOR_COMMAND";
@@ -20,7 +22,6 @@ inline constexpr const char* kHeartbeat = "HEARTBEAT";
 inline constexpr const char* kTeleop = "TELEOP";
 inline constexpr const char* kAuthority = "AUTHORITY";
 inline constexpr const char* kFaults = "FAULTS";
-inline constexpr const char* kSafety = "SAFETY";
 inline constexpr const char* kMissionChunk = "MISSION_CHUNK";
 inline constexpr const char* kCommandAck = "COMMAND_ACK";
 inline constexpr const char* kParams = "PARAMS";

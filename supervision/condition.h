@@ -260,6 +260,14 @@ static_assert(
     }(),
     "rows in the order of the enumeration");
 
+/// The names alone, for whoever reads or lists them (common/fields.h).
+inline constexpr auto kConditionNames = [] {
+  std::array<EnumName<Condition>, kConditionCount> names{};
+  for (std::size_t i = 0; i < kConditionCount; ++i)
+    names[i] = {kConditionInfos[i].condition, kConditionInfos[i].name};
+  return names;
+}();
+
 /// A set of conditions. Real-time safe: no allocation, no locks, no exceptions.
 class ConditionSet {
  public:

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "app/station/operator_command.h"
+#include "supervision/operator_command.h"
 #include "app/station/telemetry.h"
 #include "common/time.h"
 #include "sim_hil/fault_schedule.h"

@@ -18,7 +18,7 @@ class FlightWatch {
   explicit FlightWatch(const CaseLimits& limits) : limits_(limits) {}
 
   /// An operator has asked to fly the mission with this command.
-  void navigateAsked(std::int32_t sequence) { navigate_sequences_.insert(sequence); }
+  void navigateAsked(std::int64_t sequence) { navigate_sequences_.insert(sequence); }
 
   /// After every cycle; returns what is wrong in it, once each.
   [[nodiscard]] std::optional<std::string> check(const Lockstep& bench);
@@ -40,7 +40,7 @@ class FlightWatch {
   [[nodiscard]] std::optional<std::string> checkMachine(const Lockstep& bench) const;
 
   CaseLimits limits_;
-  std::set<std::int32_t> navigate_sequences_;
+  std::set<std::int64_t> navigate_sequences_;
   Mode mode_{Mode::kStandby};
   Stream reel_;
   Stream angles_;

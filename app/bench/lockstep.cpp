@@ -6,6 +6,7 @@
 
 #include <tautline/sim_truth_t.hpp>
 
+#include "app/station/fence_scene.h"
 #include "app/station/mission_upload.h"
 #include "app/station/operator_message.h"
 #include "app/version.h"
@@ -34,6 +35,7 @@ StationConfig forBench(const LockstepConfig& config) {
   StationConfig station = config.station;
   station.run_mode = RunMode::kSim;
   station.core.guidance.home_position_m = *config.world.start;
+  if (config.map_known) station.core.fence.obstacles = fenceObstaclesOf(config.world);
   return station;
 }
 
@@ -77,6 +79,8 @@ Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
       device_(makeDevice(config_, port_, frames_.get())),
       station_(config_.core),
       floor_(config.world.floor) {
+  input_.host.run_mode = config_.run_mode;
+  input_.host.device = DeviceReality::kEmulated;
   if (sink == nullptr) return;
   sink_.emplace(*sink, faults_);
   telemetry_ = std::make_unique<Telemetry>(*sink_, config_.run_mode, Duration::zero(),
@@ -136,85 +140,87 @@ void Lockstep::inject(const sim::Fault& fault) {
                       .problem = "too many faults at once",
                       .allowed = "at most " + std::to_string(sim::kMaxFaults)});
   }
-  /// The operator of the last command lives on, as the command line does while it waits.
-  void Lockstep::beat(const std::optional<OperatorCommand>& command) noexcept {
-    if (command) session_ = command->session;
-    input_.heartbeat.reset();
-    if (session_ == 0 || silent_ || faults_.operatorCut() || now_ < next_heartbeat_) return;
-    next_heartbeat_ = now_ + kHeartbeatPeriod;
-    input_.heartbeat = Heartbeat{session_, operatorName("bench")};
-  }
+}
 
-  template <class Message>
-  void Lockstep::record(const char* channel, Message message) noexcept {
-    std::array<std::uint8_t, 4096> buffer{};
-    message.utime = toMicroseconds(input_.now);
-    const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
-    if (size > 0)
-      sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});
-  }
+/// The operator of the last command lives on, as the command line does while it waits.
+void Lockstep::beat(const std::optional<OperatorCommand>& command) noexcept {
+  if (command) session_ = command->session;
+  input_.heartbeat.reset();
+  if (session_ == 0 || silent_ || faults_.operatorCut() || now_ < next_heartbeat_) return;
+  next_heartbeat_ = now_ + kHeartbeatPeriod;
+  input_.heartbeat = Heartbeat{session_, operatorName("bench")};
+}
 
-  /// What lcm-logger would have heard of the operator.
-  void Lockstep::recordOperator() noexcept {
-    if (input_.command) {
-      record(channel::kOperatorCommand, messageOf(*input_.command));
-    }
-    if (input_.chunk != nullptr) record(channel::kMissionChunk, *input_.chunk);
-  }
+template <class Message>
+void Lockstep::record(const char* channel, Message message) noexcept {
+  std::array<std::uint8_t, 4096> buffer{};
+  message.utime = toMicroseconds(input_.now);
+  const int size = message.encode(buffer.data(), 0, static_cast<int>(buffer.size()));
+  if (size > 0)
+    sink_->publish(channel, message.utime, {buffer.data(), static_cast<std::size_t>(size)});
+}
 
-  void Lockstep::recordTruth() noexcept {
-    next_truth_ = now_ + kTruthPeriod;
-    tautline::sim_truth_t message{};
-    sim::fillTruth(truth(), 0, message);
-    record(channel::kSimTruth, message);
+/// What lcm-logger would have heard of the operator.
+void Lockstep::recordOperator() noexcept {
+  if (input_.command) {
+    record(channel::kOperatorCommand, messageOf(*input_.command));
   }
+  if (input_.chunk != nullptr) record(channel::kMissionChunk, *input_.chunk);
+}
 
-  FlightResult flyMission(Lockstep & bench, const MissionPlan& mission, Duration limit,
-                          const std::function<void(const Lockstep&)>& each_cycle) {
-    FlightResult result;
-    const Time end = bench.now() + limit;
-    std::int64_t sequence = 0;
-    const auto cycle = [&](const std::optional<OperatorCommand>& command = {},
-                           const tautline::mission_chunk_t* chunk = nullptr) {
-      const StepOutput& out = bench.step(command, chunk);
-      if (each_cycle) each_cycle(bench);
-      return out.ack && out.ack->result == AckResult::kAccepted;
-    };
-    const auto ask = [&](Request request) {
-      return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash});
-    };
-    const auto over = [&] { return bench.now() >= end || bench.truth().crashed; };
-    const auto flyUntil = [&](Mode mode) {
-      while (!over() && bench.output().supervision.mode != mode) cycle();
-      return !over();
-    };
+void Lockstep::recordTruth() noexcept {
+  next_truth_ = now_ + kTruthPeriod;
+  tautline::sim_truth_t message{};
+  sim::fillTruth(truth(), 0, message);
+  record(channel::kSimTruth, message);
+}
 
-    // Telemetry has to run for a moment before the station lets itself be armed.
-    while (!result.armed && !over()) {
-      for (int i = 0; i < 50; ++i) cycle();
-      result.armed = ask(Request::kArm);
-    }
-    result.took_off = result.armed && ask(Request::kTakeoff) && flyUntil(Mode::kHold);
-    if (result.took_off) {
-      forEachChunk(mission, [&](tautline::mission_chunk_t& chunk) {
-        chunk.session = kSession;
-        chunk.sequence = ++sequence;
-        return cycle({}, &chunk);
-      });
-      if (ask(Request::kNavigate)) flyUntil(Mode::kHold);
-      result.completed = bench.output().mission.state == MissionState::kCompleted;
-    }
-    if (!over() && bench.output().supervision.mode != Mode::kStandby) {
-      ask(Request::kLand);
-      flyUntil(Mode::kStandby);
-      for (const Time settled = bench.now() + kSettle; bench.now() < settled;)
-        cycle();  // the last centimetres, rotors off
-      result.landed = bench.output().supervision.mode == Mode::kStandby &&
-                      bench.truth().on_ground && !bench.truth().motors_on && !bench.truth().crashed;
-    }
-    result.crash = bench.truth().crash_reason;
-    result.duration = bench.now() - Time{};
-    return result;
+FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration limit,
+                        const std::function<void(const Lockstep&)>& each_cycle) {
+  FlightResult result;
+  const Time end = bench.now() + limit;
+  std::int64_t sequence = 0;
+  const auto cycle = [&](const std::optional<OperatorCommand>& command = {},
+                         const tautline::mission_chunk_t* chunk = nullptr) {
+    const StepOutput& out = bench.step(command, chunk);
+    if (each_cycle) each_cycle(bench);
+    return out.ack && out.ack->result == AckResult::kAccepted;
+  };
+  const auto ask = [&](Request request) {
+    return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash});
+  };
+  const auto over = [&] { return bench.now() >= end || bench.truth().crashed; };
+  const auto flyUntil = [&](Mode mode) {
+    while (!over() && bench.output().supervision.mode != mode) cycle();
+    return !over();
+  };
+
+  // Telemetry has to run for a moment before the station lets itself be armed.
+  while (!result.armed && !over()) {
+    for (int i = 0; i < 50; ++i) cycle();
+    result.armed = ask(Request::kArm);
   }
+  result.took_off = result.armed && ask(Request::kTakeoff) && flyUntil(Mode::kHold);
+  if (result.took_off) {
+    forEachChunk(mission, [&](tautline::mission_chunk_t& chunk) {
+      chunk.session = kSession;
+      chunk.sequence = ++sequence;
+      return cycle({}, &chunk);
+    });
+    if (ask(Request::kNavigate)) flyUntil(Mode::kHold);
+    result.completed = bench.output().mission.state == MissionState::kCompleted;
+  }
+  if (!over() && bench.output().supervision.mode != Mode::kStandby) {
+    ask(Request::kLand);
+    flyUntil(Mode::kStandby);
+    for (const Time settled = bench.now() + kSettle; bench.now() < settled;)
+      cycle();  // the last centimetres, rotors off
+    result.landed = bench.output().supervision.mode == Mode::kStandby && bench.truth().on_ground &&
+                    !bench.truth().motors_on && !bench.truth().crashed;
+  }
+  result.crash = bench.truth().crash_reason;
+  result.duration = bench.now() - Time{};
+  return result;
+}
 
 }  // namespace tautline::bench

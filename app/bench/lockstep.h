@@ -28,7 +28,8 @@ namespace tautline::bench {
 struct LockstepConfig {
   StationConfig station;
   sim::SimConfig sim;
-  Scene world;  ///< In W, with a start.
+  Scene world;           ///< In W, with a start.
+  bool map_known{true};  ///< The station has the scene's obstacles as its map.
   std::uint64_t seed{1};
 };
 

@@ -16,6 +16,9 @@ ReadResult MemoryPort::read(std::span<std::uint8_t> buffer) noexcept {
   if (!connected_) return {};
   const std::size_t count = simulator_.transmit(buffer);
   counters_.bytes_in += count;
+  for (std::size_t i = 0; garble_every_ > 0 && i < count; ++i) {
+    if (++passed_ % garble_every_ == 0) buffer[i] ^= 0x20;
+  }
   return {count};
 }
 

@@ -26,10 +26,15 @@ class MemoryPort final : public BytePort {
   void unplug() noexcept { connected_ = false; }
   void plug() noexcept;
 
+  /// From now on every n-th byte to the station has one bit turned over; 0: none.
+  void garble(std::size_t n) noexcept { garble_every_ = n; }
+
  private:
   sim::Simulator& simulator_;
   PortCounters counters_;
   bool connected_{true};
+  std::size_t garble_every_{0};
+  std::size_t passed_{0};  ///< Bytes since garbling began.
 };
 
 }  // namespace tautline::bench

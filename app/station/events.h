@@ -27,17 +27,8 @@ enum class EventCode : std::uint8_t {
   kNoProgress,
   kBadContact,
   kUnreachable,
-  kSensorsStale,
-  kSensorsBack,
-  kVehicleStale,
-  kVehicleBack,
-  kLinkLost,
-  kLinkBack,
-  kLocalizationLost,
-  kLocalizationBack,
-  kVehicleFault,
-  kVehicleFaultCleared,
-  kLoopOverruns,
+  kConditionCame,  ///< Text and remedy are those of kConditionInfos.
+  kConditionWent,
   kLinkSilent,  ///< This and the following in the order of LinkFault.
   kLinkGarbage,
   kLinkOtherProtocol,
@@ -67,6 +58,9 @@ enum class EventCode : std::uint8_t {
   kParameterChanged,
 };
 
+/// In event_t.code: twice a condition's number from here on, and one more when it is over.
+inline constexpr std::int32_t kFirstConditionCode = 1000;
+
 /// In text and remedy {} stands for the serial device or CAN interface; appendText() puts it in.
 struct EventText {
   EventCode code;
@@ -89,25 +83,8 @@ inline constexpr auto kEventTexts = std::to_array<EventText>({
      "run `tautline mission check` on the file"},
     {EventCode::kUnreachable, Severity::kError, "waypoint is beyond the tether",
      "mission ended, hovering", "run `tautline mission check` on the file"},
-    {EventCode::kSensorsStale, Severity::kError, "tether length or angles are stale",
-     "zero rates until they are back",
-     "check the cable to the ground station and its telemetry rate"},
-    {EventCode::kSensorsBack, Severity::kInfo, "tether sensors are back", "", ""},
-    {EventCode::kVehicleStale, Severity::kError, "no status from the vehicle",
-     "zero rates; landing when it is back",
-     "check the vehicle's power and its link to the ground station"},
-    {EventCode::kVehicleBack, Severity::kInfo, "the vehicle's status is back", "", ""},
-    {EventCode::kLinkLost, Severity::kCritical, "link to the vehicle lost",
-     "zero rates; landing when it is back", "check that the device is plugged in and powered"},
-    {EventCode::kLinkBack, Severity::kInfo, "link to the vehicle is back", "", ""},
-    {EventCode::kLocalizationLost, Severity::kError, "localization lost", "zero rates",
-     "wait for it to come back; `tautline estop` cuts the motors"},
-    {EventCode::kLocalizationBack, Severity::kInfo, "localization is back", "", ""},
-    {EventCode::kVehicleFault, Severity::kCritical, "the vehicle reports a fault", "landing",
-     "see the flight mode and flags in `tautline status`"},
-    {EventCode::kVehicleFaultCleared, Severity::kInfo, "the vehicle's fault is gone", "", ""},
-    {EventCode::kLoopOverruns, Severity::kError, "the control loop misses its period",
-     "mission ended, hovering", "free the machine, or lower loop_rate_hz"},
+    {EventCode::kConditionCame, Severity::kError, "", "", ""},
+    {EventCode::kConditionWent, Severity::kInfo, "over: ", "", ""},
     {EventCode::kLinkSilent, Severity::kError, "the device is connected and says nothing",
      "no arming",
      "check its power and wiring, and that serial.baud and the bus's bit rate are its own"},
@@ -212,7 +189,10 @@ static_assert(
 struct StationEvent {
   EventCode code{EventCode::kModeChanged};
   Mode mode{Mode::kStandby};  ///< kModeChanged only.
-  ConditionSet reasons;       ///< kModeChanged only.
+  ConditionSet reasons{};     ///< kModeChanged only.
+  Condition condition{};      ///< This and what follows: kConditionCame, kConditionWent only.
+  double value{0.0};
+  double limit{0.0};
 };
 
 }  // namespace tautline

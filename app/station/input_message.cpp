@@ -28,6 +28,36 @@ Int as(T value) noexcept {
   return static_cast<Int>(value);
 }
 
+void putHost(tautline::station_input_t& m, const HostFacts& host) noexcept {
+  m.run_mode = as<std::int8_t>(host.run_mode);
+  m.device_reality = as<std::int8_t>(host.device);
+  m.real_time = host.real_time;
+  m.clock_synchronized = host.clock_synchronized;
+  m.lateness_ns = host.lateness.count();
+  m.unix_offset_ns = host.unix_offset.count();
+  m.recorder_heard = host.recorder.has_value();
+  if (!host.recorder) return;
+  m.recorder_time_ns = host.recorder->heard.time_since_epoch().count();
+  m.recorder_recording = host.recorder->recording;
+  m.disk_free_bytes = host.recorder->disk_free;
+  m.disk_limit_bytes = host.recorder->disk_limit;
+}
+
+HostFacts hostOf(const tautline::station_input_t& m) noexcept {
+  HostFacts host;
+  host.run_mode = static_cast<RunMode>(m.run_mode);
+  host.device = static_cast<DeviceReality>(m.device_reality);
+  host.real_time = m.real_time != 0;
+  host.clock_synchronized = m.clock_synchronized != 0;
+  host.lateness = Duration(m.lateness_ns);
+  host.unix_offset = Duration(m.unix_offset_ns);
+  if (m.recorder_heard != 0) {
+    host.recorder = RecorderStatus{timeOf(m.recorder_time_ns), m.recorder_recording != 0,
+                                   m.disk_free_bytes, m.disk_limit_bytes};
+  }
+  return host;
+}
+
 }  // namespace
 
 tautline::station_input_t messageOf(const StepInput& in) noexcept {
@@ -70,6 +100,7 @@ tautline::station_input_t messageOf(const StepInput& in) noexcept {
     m.turned_away_result = as<std::int8_t>(in.turned_away->result);
   }
   m.loop_overruns = in.missed_in_a_row;
+  putHost(m, in.host);
 
   m.reel_time_ns = nanosecondsOf(f.reel);
   m.reel_sequence = as<std::int32_t>(f.reel.sequence);
@@ -104,6 +135,7 @@ tautline::station_input_t messageOf(const StepInput& in) noexcept {
   m.flight_mode = f.vehicle.value.flight_mode;
   m.vehicle_flags = f.vehicle.value.flags;
   m.backup_battery_v = f.vehicle.value.backup_battery_voltage;
+  m.vehicle_protocol = as<std::int8_t>(f.vehicle.value.protocol);
 
   m.ground_time_ns = nanosecondsOf(f.ground);
   m.ground_sequence = as<std::int32_t>(f.ground.sequence);
@@ -119,6 +151,7 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
   StepInput in;
   in.now = timeOf(m.now_ns);
   in.missed_in_a_row = m.loop_overruns;
+  in.host = hostOf(m);
   if (m.has_command) {
     in.command = OperatorCommand{.session = m.command_session,
                                  .sequence = m.command_sequence,
@@ -155,7 +188,8 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
   fill(f.vehicle, m.vehicle_time_ns, m.vehicle_sequence, m.vehicle_valid);
   f.vehicle.value = {static_cast<VehiclePhase>(m.vehicle_phase),
                      static_cast<std::uint8_t>(m.flight_mode),
-                     static_cast<std::uint16_t>(m.vehicle_flags), m.backup_battery_v};
+                     static_cast<std::uint16_t>(m.vehicle_flags), m.backup_battery_v,
+                     static_cast<VehicleProtocol>(m.vehicle_protocol)};
   fill(f.ground, m.ground_time_ns, m.ground_sequence, m.ground_valid);
   f.ground.value = {static_cast<std::uint8_t>(m.ground_mode), m.ground_battery_v};
   f.link = {m.link_connected != 0,

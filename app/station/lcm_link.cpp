@@ -1,5 +1,7 @@
 #include "app/station/lcm_link.h"
 
+#include <tautline/log_status_t.hpp>
+
 #include "app/lcm_access.h"
 #include "common/error.h"
 #include "lcmtypes/channels.h"
@@ -13,6 +15,9 @@ LcmLink::LcmLink(const std::string& url, const AuthorityConfig& authority)
   subscribe<&OperatorInbox::chunk>(channel::kMissionChunk);
   subscribe<&OperatorInbox::heartbeat>(channel::kHeartbeat);
   subscribe<&OperatorInbox::sticks>(channel::kTeleop);
+  lcm_subscription_set_queue_capacity(
+      lcm_subscribe(lcm_.getUnderlyingLCM(), channel::kLogStatus, &LcmLink::onLogStatus, this),
+      kQueueCapacity);
 }
 
 template <void (OperatorInbox::*take)(std::span<const std::uint8_t>) noexcept>
@@ -36,9 +41,18 @@ bool LcmLink::publish(const char* channel, std::int64_t /*utime*/,
 
 void LcmLink::poll(Time now, std::int64_t holder) noexcept {
   inbox_.beginCycle(now, holder);
+  recorder_.reset();
   for (int i = 0; i < kMaxMessagesPerPoll; ++i)
     if (lcm_handle_timeout(lcm_.getUnderlyingLCM(), 0) <= 0) return;
   inbox_.overflowed();
+}
+
+void LcmLink::onLogStatus(const lcm_recv_buf_t* bytes, const char* /*channel*/,
+                          void* self) noexcept {
+  tautline::log_status_t m;
+  if (m.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0) return;
+  static_cast<LcmLink*>(self)->recorder_ =
+      RecorderStatus{{}, m.recording != 0, m.disk_free_bytes, m.disk_limit_bytes};
 }
 
 }  // namespace tautline

@@ -12,6 +12,7 @@
 
 #include "app/station/operator_inbox.h"
 #include "app/station/telemetry.h"
+#include "supervision/detect/host_watch.h"
 
 namespace tautline {
 
@@ -33,6 +34,8 @@ class LcmLink final : public TelemetrySink {
 
   /// What the last poll() brought.
   [[nodiscard]] const OperatorInbox& inbox() const noexcept { return inbox_; }
+  /// What a recorder said, if it did since the poll() before; `heard` is left to the caller.
+  [[nodiscard]] const std::optional<RecorderStatus>& recorder() const noexcept { return recorder_; }
 
  private:
   // A raw handler of the C library: the C++ one makes a std::string of the channel for every
@@ -42,12 +45,15 @@ class LcmLink final : public TelemetrySink {
   template <void (OperatorInbox::*take)(std::span<const std::uint8_t>) noexcept>
   void subscribe(const char* channel);
 
+  static void onLogStatus(const lcm_recv_buf_t* bytes, const char* channel, void* self) noexcept;
+
   /// A flood of 10,000 messages a second is read as it comes by a loop of 100 Hz.
   static constexpr int kMaxMessagesPerPoll = 128;
   static constexpr int kQueueCapacity = 128;  ///< For each channel.
 
   lcm::LCM lcm_;
   OperatorInbox inbox_;
+  std::optional<RecorderStatus> recorder_;
 };
 
 }  // namespace tautline

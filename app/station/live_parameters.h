@@ -4,7 +4,7 @@
 /// Parameters of the core that can be changed while the station runs, in STANDBY only: the numbers
 /// of the sections below. A parameter is addressed by the hash of its key, so that client and
 /// station need not be of one version. Not live: `core.control` (its law is made at start-up),
-/// texts, choices and vectors, and everything outside `core`.
+/// texts, choices, vectors and rows, and everything outside `core`.
 
 #include <algorithm>
 #include <array>
@@ -50,6 +50,7 @@ struct ParameterChange {
 
 inline constexpr std::array kLiveSections{
     std::string_view{"guidance"},   std::string_view{"localizer"},
+    std::string_view{"detect"},     std::string_view{"fence"},
     std::string_view{"supervisor"}, std::string_view{"authority"},
     std::string_view{"executor"},   std::string_view{"limits"},
     std::string_view{"gate"},       std::string_view{"reel_dead_zone"}};
@@ -77,6 +78,8 @@ class ParameterSetter {
   void field(const char* /*key*/, T& /*target*/, const char* /*doc*/) noexcept {}
   template <class Enum, class Names>
   void choice(const char* /*key*/, Enum& /*target*/, const Names&, const char* /*doc*/) noexcept {}
+  template <class List>
+  void rows(const char* /*key*/, List& /*target*/, const char* /*doc*/) noexcept {}
   template <class Struct>
   void section(const char* key, Struct& inner) noexcept {
     const bool top = depth_ == 0;

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "app/station/black_box.h"
+#include "app/station/fence_scene.h"
 #include "app/station/lcm_link.h"
 #include "app/station/real_time_loop.h"
 #include "app/station/service_notifier.h"
@@ -51,7 +52,8 @@ void addOptions(CLI::App& app, Options& o) {
                  "where the device is, instead of the file's: serial.device, can.interface or "
                  "replay.file");
   app.add_option("--scene", o.scene_file,
-                 "scene file whose start is home, instead of core.guidance.home_position_m");
+                 "scene file: its start is home, instead of core.guidance.home_position_m, and its "
+                 "obstacles are those of core.fence");
   app.add_option("--lcm-url", o.lcm_url, "where the other programs are")->capture_default_str();
   app.add_flag("--check-config", o.check_config,
                "read everything, say whether it is right, and end");
@@ -74,14 +76,18 @@ StationConfig effectiveConfig(const Options& o) {
                         .remedy = "say where the drone is parked"});
     }
     config.core.guidance.home_position_m = *scene.start;
+    config.core.fence.obstacles = fenceObstaclesOf(scene);
   }
   return config;
 }
 
-/// Real-time rights by the config's policy; says what it got.
-void becomeRealTime(const StationConfig& config) {
+/// Real-time rights by the config's policy; says what is missing. True if the loop has a real-time
+/// priority and all else that was asked for.
+bool becomeRealTime(const StationConfig& config) {
+  bool complete = config.realtime_priority > 0;
   for (const RealTimeStep& step : startRealTime({config.realtime_priority, config.realtime_cpu})) {
     if (step.ok) continue;
+    complete = false;
     if (config.realtime_policy == RealTimePolicy::kEnforce) {
       throw InputError(
           {.key = "realtime_policy", .problem = "not " + step.name + ": " + step.reason},
@@ -89,6 +95,7 @@ void becomeRealTime(const StationConfig& config) {
     }
     fmt::print(stderr, "tautline-station: warning: not {}: {}\n", step.name, step.reason);
   }
+  return complete;
 }
 
 /// A box that cannot be made is no reason to stay on the ground; one that another station has is.
@@ -133,13 +140,15 @@ void run(const Options& options) {
     fmt::print(stderr, "tautline-station: warning: {}; its watchdog hears nothing\n",
                service.error());
 
-  becomeRealTime(config);
+  HostFacts host;
+  host.run_mode = config.run_mode;
+  host.real_time = becomeRealTime(config);
   fmt::print("tautline-station {}: {} on {}, {:g} Hz, {}; stop with Ctrl-C\n", kVersion,
              device.name(), made.place, config.loop_rate_hz,
              nameOf(config.run_mode, kRunModeNames));
   std::fflush(stdout);
 
-  const LoopParts parts{device, lcm, *station, telemetry, black_box.get(), &service};
+  const LoopParts parts{device, lcm, *station, telemetry, black_box.get(), &service, host, &made};
   const LoopStatistics::Snapshot summary =
       realTimeLoop(parts, fromSeconds(1.0 / config.loop_rate_hz), stop_requested);
   fmt::print("tautline-station: stopped after {} cycles, {} overruns, {} periods skipped\n",

@@ -1,10 +1,9 @@
 /// @file
-/// The part of Telemetry that tells operators of their own dealings: lease, audit, faults, safety,
-/// changed parameters. Texts stay inside capacity reserved at start-up.
+/// The part of Telemetry that tells operators of their own dealings: lease, audit, faults, changed
+/// parameters. Texts stay inside capacity reserved at start-up.
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <numeric>
 #include <string_view>
 
@@ -17,7 +16,6 @@ namespace {
 
 constexpr Duration kAuthorityPeriod = std::chrono::milliseconds(500);
 constexpr Duration kFaultsPeriod = std::chrono::seconds(1);
-constexpr Duration kSafetyPeriod = std::chrono::milliseconds(200);
 
 /// Shortest text that reads back the same, as a TOML float or integer.
 struct NumberText {
@@ -46,12 +44,6 @@ void appendOperator(std::string& text, const OperatorName& name, std::int64_t se
   text.append("session ").append(hex.data(), static_cast<std::size_t>(end - hex.data()));
 }
 
-template <class T>
-double age(const Sample<T>& sample, Time now) noexcept {
-  return sample.sequence == 0 ? std::numeric_limits<double>::quiet_NaN()
-                              : toSeconds(now - sample.time);
-}
-
 }  // namespace
 
 void Telemetry::publishOperators(const StepInput& in, const StepOutput& out) noexcept {
@@ -72,10 +64,6 @@ void Telemetry::publishOperators(const StepInput& in, const StepOutput& out) noe
     fault_was_latched_ = faults.latched();
     faults_told_ = faults.count();
     sendFaults(in.now, faults);
-  }
-  if (in.now >= next_safety_) {
-    next_safety_ = in.now + kSafetyPeriod;
-    sendSafety(in, out);
   }
 }
 
@@ -180,24 +168,6 @@ void Telemetry::sendFaults(Time now, const FaultLog& faults) noexcept {
     m.mode[i] = static_cast<std::int8_t>(faults[i].mode);
   }
   send(channel::kFaults, m, now);
-}
-
-void Telemetry::sendSafety(const StepInput& in, const StepOutput& out) noexcept {
-  constexpr ConditionSet kBlockers = conditionsOf(ConditionKind::kForbidsArming);
-  tautline::safety_t m{};
-  m.conditions = static_cast<std::int64_t>(out.conditions.bits());
-  m.arming_blockers = static_cast<std::int64_t>((out.conditions & kBlockers).bits());
-  std::fill(std::begin(m.value), std::end(m.value), std::numeric_limits<double>::quiet_NaN());
-  std::fill(std::begin(m.limit), std::end(m.limit), std::numeric_limits<double>::quiet_NaN());
-  const auto value = [&m](Condition c) -> double& { return m.value[static_cast<std::size_t>(c)]; };
-  value(Condition::kReelStale) = age(in.sensors.reel, in.now);
-  value(Condition::kAnglesStale) = age(in.sensors.angles, in.now);
-  value(Condition::kAttitudeStale) = age(in.sensors.attitude, in.now);
-  value(Condition::kVehicleStale) = age(in.sensors.vehicle, in.now);
-  value(Condition::kTimeInMode) = toSeconds(out.supervision.time_in_mode);
-  const Lease& lease = out.operators->authority().lease();
-  if (lease.held()) value(Condition::kOperatorLost) = toSeconds(in.now - lease.heard);
-  send(channel::kSafety, m, in.now);
 }
 
 }  // namespace tautline

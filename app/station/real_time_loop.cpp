@@ -14,6 +14,8 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
                                       const volatile std::sig_atomic_t& stop) {
   LoopStatistics statistics;
   StepInput in;
+  in.host = parts.host;
+  in.host.clock_synchronized = clockSynchronized();
   TickGrid grid(period, monotonicNow() + period);
   Time next_statistics = grid.next();
   int until_params = 0;
@@ -24,9 +26,17 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
     in.now = monotonicNow();  // the one reading of the clock that the core sees
     const Duration lateness = in.now - grid.next();
 
+    in.host.lateness = lateness;
+    in.host.unix_offset = unixOffset();
+    if (parts.plugged != nullptr) in.host.device = parts.plugged->reality();
+
     parts.device.read(in.now, in.sensors);
     parts.lcm.poll(in.now, parts.station.lease().session);
     parts.lcm.inbox().fill(in);
+    if (parts.lcm.recorder()) {
+      in.host.recorder = parts.lcm.recorder();
+      in.host.recorder->heard = in.now;
+    }
     const StepOutput& out = parts.station.step(in);
     parts.device.write(in.now, out.command);
     parts.telemetry.publish(in, out);
@@ -35,6 +45,7 @@ LoopStatistics::Snapshot realTimeLoop(const LoopParts& parts, Duration period,
       next_statistics += kStatisticsPeriod;
       parts.telemetry.publishLoop(in.now, period, statistics.snapshot());
       statistics.startWindow();
+      in.host.clock_synchronized = clockSynchronized();
       if (until_params == 0) {
         parts.telemetry.publishParams(in.now);
         until_params = kParamsEvery;

@@ -9,9 +9,9 @@
 #include "app/station/lcm_link.h"
 #include "app/station/service_notifier.h"
 #include "app/station/station.h"
+#include "app/station/station_device.h"
 #include "app/station/telemetry.h"
 #include "common/loop_timer.h"
-#include "drivers/device.h"
 
 namespace tautline {
 
@@ -20,8 +20,10 @@ struct LoopParts {
   LcmLink& lcm;
   Station& station;
   Telemetry& telemetry;
-  BlackBox* black_box;         ///< May be null.
-  ServiceNotifier* service{};  ///< May be null.
+  BlackBox* black_box;             ///< May be null.
+  ServiceNotifier* service{};      ///< May be null.
+  HostFacts host{};                ///< What is known at start; the loop adds what changes.
+  const StationDevice* plugged{};  ///< Behind `device`; null: whether it is real is not known.
 };
 
 /// Runs until `stop` is set, then sends the device's last words. Real-time safe after the first

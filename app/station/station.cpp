@@ -1,26 +1,15 @@
 #include "app/station/station.h"
 
+#include <algorithm>
 #include <memory>
 
 namespace tautline {
 namespace {
 
-/// A condition that an operator hears of when it comes and when it goes.
-struct ToldCondition {
-  Condition condition;
-  EventCode came;
-  EventCode went;
-};
-constexpr std::array kToldConditions{
-    ToldCondition{Condition::kReelStale, EventCode::kSensorsStale, EventCode::kSensorsBack},
-    ToldCondition{Condition::kAnglesStale, EventCode::kSensorsStale, EventCode::kSensorsBack},
-    ToldCondition{Condition::kVehicleStale, EventCode::kVehicleStale, EventCode::kVehicleBack},
-    ToldCondition{Condition::kLinkLost, EventCode::kLinkLost, EventCode::kLinkBack},
-    ToldCondition{Condition::kLocalizationLost, EventCode::kLocalizationLost,
-                  EventCode::kLocalizationBack},
-    ToldCondition{Condition::kVehicleFault, EventCode::kVehicleFault,
-                  EventCode::kVehicleFaultCleared},
-};
+/// What an operator hears of when it comes and when it goes: all but the facts of a flight.
+constexpr ConditionSet kTold =
+    ConditionSet::fromBits(~std::uint64_t{0})
+        .without(conditionsOf(ConditionKind::kFact) | ConditionSet{Condition::kVehicleFlying});
 
 EventCode eventOf(MissionFailure failure) noexcept {
   switch (failure) {
@@ -43,6 +32,7 @@ EventCode eventOf(MissionFailure failure) noexcept {
 Station::Station(const CoreConfig& config)
     : config_(config),
       localizer_(config_.localizer),
+      monitor_(config_),
       supervisor_(config_.supervisor),
       guidance_(config_.guidance, config_.executor, config_.control.composite.pole, config_.limits),
       controller_(makeController(config_.control)),
@@ -62,7 +52,7 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   const ConditionSet conditions_before = out_.conditions;
   out_.anchor = guidance_.contacts().anchor();
   out_.estimate = localizer_.update(in.now, in.sensors, last_command_, out_.anchor);
-  out_.conditions = assess(in, out_.estimate) | dialogue_.conditions(in.now, supervisor_.mode());
+  out_.conditions = assess(in);
   tellChanges(conditions_before);
   tellLink(in.sensors.link.fault);
 
@@ -101,36 +91,34 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   return out_;
 }
 
-ConditionSet Station::assess(const StepInput& in, const Estimate& estimate) noexcept {
-  const SensorFrame& f = in.sensors;
-  const SensorHealth& health = localizer_.sensorHealth();
-  const auto unusable = [&](SensorStream stream) { return !health[stream].ok(); };
-  ConditionSet set = guidance_.conditions();
-  set.set(Condition::kReelStale, unusable(SensorStream::kReel));
-  set.set(Condition::kAnglesStale, unusable(SensorStream::kAngles));
-  set.set(Condition::kAttitudeStale, unusable(SensorStream::kAttitude));
-  set.set(Condition::kVehicleStale, unusable(SensorStream::kVehicle));
-  set.set(Condition::kLinkLost, !f.link.connected);
-  set.set(Condition::kLinkFault, f.link.fault != LinkFault::kNone);
-  set.set(Condition::kLocalizationLost, !estimate.usable());
-  set.set(Condition::kVehicleFault,
-          f.vehicle.sequence > 0 && f.vehicle.value.phase == VehiclePhase::kFault);
-  set.set(Condition::kVehicleFlying,
-          f.vehicle.sequence > 0 && (f.vehicle.value.phase == VehiclePhase::kFlying ||
-                                     f.vehicle.value.phase == VehiclePhase::kLanding));
+ConditionSet Station::assess(const StepInput& in) noexcept {
+  ConditionSet facts =
+      guidance_.conditions() | dialogue_.conditions(in.now, supervisor_.mode());
   const MissionPlan* waiting = missions_.loaded();
-  set.set(Condition::kMissionLoaded, waiting != nullptr);
-  set.set(Condition::kTetherElsewhere,
-          waiting != nullptr && !guidance_.startsWithPresentTether(*waiting));
-  set.set(Condition::kOverruns, in.missed_in_a_row >= config_.overruns_in_a_row);
-  return set;
+  facts.set(Condition::kMissionLoaded, waiting != nullptr);
+  facts.set(Condition::kTetherElsewhere,
+            waiting != nullptr && !guidance_.startsWithPresentTether(*waiting));
+  const ConditionSet counting = monitor_.update({.now = in.now,
+                                                 .sensors = &in.sensors,
+                                                 .health = &localizer_.sensorHealth(),
+                                                 .estimate = &out_.estimate,
+                                                 .anchor = &out_.anchor,
+                                                 .last_command = &last_command_,
+                                                 .host = &in.host,
+                                                 .missed_in_a_row = in.missed_in_a_row,
+                                                 .mode = supervisor_.mode(),
+                                                 .facts = facts});
+  out_.findings = monitor_.findings();
+  return counting;
 }
 
 /// New numbers for every part that is not made at start-up; on the ground, where nothing is under
-/// way. Guidance is made anew in its place, for its parts refer to each other.
+/// way. Parts that refer to others are made anew in their place.
 void Station::reconfigure(Time now) noexcept {
   localizer_ = Localizer(config_.localizer);
   localizer_.reset(config_.guidance.home_position_m, now);
+  std::destroy_at(&monitor_);
+  std::construct_at(&monitor_, config_);
   supervisor_ = Supervisor(config_.supervisor);
   std::destroy_at(&guidance_);
   std::construct_at(&guidance_, config_.guidance, config_.executor, config_.control.composite.pole,
@@ -141,7 +129,7 @@ void Station::reconfigure(Time now) noexcept {
 
 void Station::enterMode(Time now) noexcept {
   const Mode mode = out_.supervision.mode;
-  tell({EventCode::kModeChanged, mode, out_.supervision.reasons});
+  tell({.code = EventCode::kModeChanged, .mode = mode, .reasons = out_.supervision.reasons});
   if (mode == Mode::kAuto) missions_.activate();
   if (mode == Mode::kStandby) {
     localizer_.reset(config_.guidance.home_position_m, now);
@@ -166,14 +154,25 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
 }
 
 /// The supervisor's last word: no rates without fresh tether sensors, link and localization, but to
-/// come down without them; none on the ground.
+/// come down without them; none on the ground; no way outwards at the end of the tether, or where it
+/// pulls too hard or hangs.
 VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
-  constexpr ConditionSet kStandStill{Condition::kReelStale, Condition::kAnglesStale,
-                                     Condition::kLinkLost, Condition::kVehicleStale,
-                                     Condition::kLocalizationLost};
+  constexpr ConditionSet kUnheard{Condition::kLinkLost, Condition::kVehicleStale};
+  constexpr ConditionSet kBlind =
+      kUnheard | ConditionSet{Condition::kReelStale,       Condition::kReelStuck,
+                              Condition::kReelJump,        Condition::kAnglesStale,
+                              Condition::kAnglesStuck,     Condition::kAnglesJump,
+                              Condition::kLocalizationLost};
+  constexpr ConditionSet kNoPayOut{Condition::kOverTension, Condition::kReelLimit,
+                                   Condition::kTetherSlack};
   const Mode mode = out_.supervision.mode;
-  const bool sees = !out_.conditions.any(kStandStill) || mode == Mode::kDescend;
-  if (isIn(mode, kFlyingModes) && sees) return gated;
+  // A descent does not ask the tether where it is.
+  const ConditionSet stand_still = mode == Mode::kDescend ? kUnheard : kBlind;
+  if (isIn(mode, kFlyingModes) && !out_.conditions.any(stand_still)) {
+    VehicleCommand allowed = gated;
+    if (out_.conditions.any(kNoPayOut)) allowed.length_rate = std::min(allowed.length_rate, 0.0);
+    return allowed;
+  }
   gate_.reset();
   VehicleCommand still;
   still.engaged = gated.engaged;
@@ -189,24 +188,27 @@ void Station::tell(StationEvent event) noexcept {
 
 void Station::tellChanges(ConditionSet before) noexcept {
   if (supervisor_.mode() == Mode::kStandby) return;  // on the ground `tautline status` says it
-  for (const ToldCondition& t : kToldConditions) {
-    const bool is = out_.conditions.has(t.condition);
-    if (is != before.has(t.condition)) tell({is ? t.came : t.went, {}, {}});
+  for (const ConditionInfo& info : kConditionInfos) {
+    const Condition c = info.condition;
+    const bool is = out_.conditions.has(c);
+    if (is == before.has(c) || !kTold.has(c)) continue;
+    tell({.code = is ? EventCode::kConditionCame : EventCode::kConditionWent,
+          .condition = c,
+          .value = out_.findings.valueOf(c),
+          .limit = out_.findings.limitOf(c)});
   }
-  if (out_.conditions.has(Condition::kOverruns) && !before.has(Condition::kOverruns))
-    tell({EventCode::kLoopOverruns, {}, {}});
 }
 
 /// On the ground too: it is there that a wrong device or a wrong setting shows.
 void Station::tellLink(LinkFault fault) noexcept {
   if (fault == link_fault_) return;
   link_fault_ = fault;
-  tell({eventOf(fault), {}, {}});
+  tell({.code = eventOf(fault)});
 }
 
 void Station::tellMission(const ExecutorStatus& mission) noexcept {
   if (mission.state == MissionState::kCompleted || mission.state == MissionState::kFailed)
-    tell({eventOf(mission.failure), {}, {}});
+    tell({.code = eventOf(mission.failure)});
 }
 
 }  // namespace tautline

@@ -13,6 +13,7 @@
 
 #include <tautline/mission_chunk_t.hpp>
 
+#include "app/station/condition_monitor.h"
 #include "app/station/events.h"
 #include "app/station/guidance.h"
 #include "app/station/mission_store.h"
@@ -39,6 +40,7 @@ struct StepInput {
   const tautline::mission_chunk_t* chunk{
       nullptr};                     ///< A piece of a mission, or none; used during the call only.
   std::int32_t missed_in_a_row{0};  ///< Ticks that the loop has missed, as of the last cycle.
+  HostFacts host;
 };
 
 /// All that a cycle says.
@@ -47,14 +49,15 @@ struct StepOutput {
   Estimate estimate;
   Anchor anchor;
   int contact_id{kReelContact};
-  ConditionSet conditions;
+  ConditionSet conditions;  ///< What counts, after guard and recovery times.
+  Findings findings;        ///< What is the case in this cycle, with measured values and limits.
   SupervisorOutput supervision;
   ExecutorStatus mission;
   std::uint64_t loaded_hash{0};  ///< Of the mission that waits to be flown, 0 = none.
   int mission_items{0};          ///< Its waypoints received so far.
   std::optional<CommandAck> ack;
   const OperatorDialogue* operators{nullptr};  ///< The station's own; never null after a step.
-  std::array<StationEvent, 8> events{};
+  std::array<StationEvent, 16> events{};
   int event_count{0};
 };
 
@@ -70,7 +73,7 @@ class Station {
   [[nodiscard]] const Lease& lease() const noexcept { return dialogue_.authority().lease(); }
 
  private:
-  [[nodiscard]] ConditionSet assess(const StepInput& in, const Estimate& estimate) noexcept;
+  [[nodiscard]] ConditionSet assess(const StepInput& in) noexcept;
   void reconfigure(Time now) noexcept;
   void enterMode(Time now) noexcept;
   [[nodiscard]] VehicleCommand control(Duration dt, const GuidanceOutput& guidance) noexcept;
@@ -82,6 +85,7 @@ class Station {
 
   CoreConfig config_;
   Localizer localizer_;
+  ConditionMonitor monitor_;
   Supervisor supervisor_;
   Guidance guidance_;
   std::unique_ptr<Controller> controller_;

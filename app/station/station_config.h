@@ -26,6 +26,8 @@
 #include "drivers/tautline_device.h"
 #include "estimation/localizer.h"
 #include "supervision/authority_config.h"
+#include "supervision/detect/detect_config.h"
+#include "supervision/detect/fence.h"
 #include "supervision/supervisor.h"
 
 namespace tautline {
@@ -71,6 +73,8 @@ struct GuidanceConfig {
 struct CoreConfig {
   GuidanceConfig guidance;
   LocalizerConfig localizer;
+  DetectConfig detect;
+  FenceConfig fence;
   SupervisorConfig supervisor;
   AuthorityConfig authority;
   ExecutorConfig executor;
@@ -84,6 +88,8 @@ struct CoreConfig {
   void fields(Visitor& v) {
     v.section("guidance", guidance);
     v.section("localizer", localizer);
+    v.section("detect", detect);
+    v.section("fence", fence);
     v.section("supervisor", supervisor);
     v.section("authority", authority);
     v.section("executor", executor);

@@ -34,6 +34,7 @@ SerialPort& openSerial(const StationConfig& config, StationDevice& out) {
   out.warning = warningOf(opened, opened.status == SerialStatus::kRealDevice);
   SerialPort& made = *port;
   out.bytes = std::move(port);
+  out.serial = &made;
   return made;
 }
 
@@ -61,8 +62,16 @@ std::string& placeOf(StationConfig& config) noexcept {
   return config.serial.device;
 }
 
+DeviceReality StationDevice::reality() const noexcept {
+  if (serial == nullptr || !judged) return DeviceReality::kUnknown;
+  if (serial->status() == SerialStatus::kRealDevice) return DeviceReality::kReal;
+  if (!serial->connected()) return DeviceReality::kUnknown;
+  return serial->isPseudoTerminal() ? DeviceReality::kEmulated : DeviceReality::kReal;
+}
+
 StationDevice makeDevice(const StationConfig& config) {
   StationDevice out;
+  out.judged = !thisMachineHasEmulatedUart();
   StationConfig named = config;
   out.place = placeOf(named);
   const char* const name = nameOf(config.device, kDeviceKindNames);

@@ -10,6 +10,8 @@
 #include "drivers/bus_frame.h"
 #include "drivers/byte_port.h"
 #include "drivers/device.h"
+#include "drivers/serial_port.h"
+#include "supervision/detect/host_watch.h"
 
 namespace tautline {
 
@@ -19,6 +21,12 @@ struct StationDevice {
   std::unique_ptr<Device> device;     ///< Never null; goes first.
   std::string place;                  ///< Path, interface or file, for people.
   std::string warning;                ///< Why it is not open yet and what to do; empty if it is.
+  const SerialPort* serial{};         ///< Of a serial device: the port behind `bytes`.
+  bool judged{true};  ///< False on an emulated machine, whose devices look real from inside.
+
+  /// Whether what is plugged in now can move. A CAN interface does not tell. Real-time safe: no
+  /// allocation, no locks, no exceptions.
+  [[nodiscard]] DeviceReality reality() const noexcept;
 };
 
 /// Opens the port. One that cannot be opened is tried again by the loop: a device that is plugged

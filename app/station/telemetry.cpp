@@ -1,6 +1,7 @@
 #include "app/station/telemetry.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "app/station/input_message.h"
@@ -8,6 +9,8 @@
 
 namespace tautline {
 namespace {
+
+constexpr Duration kSafetyPeriod = std::chrono::milliseconds(500);
 
 void put(double (&out)[3], const Eigen::Vector3d& v) noexcept {
   for (int i = 0; i < 3; ++i) out[i] = v[i];
@@ -29,6 +32,22 @@ Int as(T value) noexcept {
   return static_cast<Int>(value);
 }
 
+/// " (0.62 s, limit 0.50)" where something was measured. Stays inside the text's room: no
+/// allocation.
+void appendMeasured(std::string& text, const StationEvent& event, const char* unit) noexcept {
+  if (event.value == 0.0 && event.limit == 0.0) return;
+  const auto append = [&text](double x) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.begin(), digits.end(), x, std::chars_format::general, 4);
+    text.append(digits.data(), as<std::size_t>(end.ptr - digits.data()));
+  };
+  text.append(" (");
+  append(event.value);
+  text.append(" ").append(unit).append(", limit ");
+  append(event.limit);
+  text.append(")");
+}
+
 }  // namespace
 
 Telemetry::Telemetry(TelemetrySink& sink, RunMode run_mode, Duration unix_offset,
@@ -48,6 +67,7 @@ void Telemetry::publish(const StepInput& in, const StepOutput& out) noexcept {
     ack.detail = out.ack->detail;
     send(channel::kCommandAck, ack, in.now);
   }
+  if (in.now >= next_safety_ || out.conditions != safety_told_) sendSafety(in.now, out);
   for (int i = 0; i < out.event_count; ++i) sendEvent(in.now, out.events[as<std::size_t>(i)]);
 
   publishOperators(in, out);
@@ -85,6 +105,20 @@ void Telemetry::sendStation(Time now, const StepOutput& out) noexcept {
   send(channel::kStationState, m, now);
 }
 
+void Telemetry::sendSafety(Time now, const StepOutput& out) noexcept {
+  next_safety_ = now + kSafetyPeriod;
+  safety_told_ = out.conditions;
+  tautline::safety_t m{};
+  static_assert(kConditionCount <= tautline::safety_t::ROOM);
+  m.conditions = as<std::int64_t>(out.conditions.bits());
+  m.raised = as<std::int64_t>(out.findings.raised.bits());
+  m.arming_blockers =
+      as<std::int64_t>((out.conditions & conditionsOf(ConditionKind::kForbidsArming)).bits());
+  std::copy(out.findings.value.begin(), out.findings.value.end(), m.value);
+  std::copy(out.findings.limit.begin(), out.findings.limit.end(), m.limit);
+  send(channel::kSafety, m, now);
+}
+
 void Telemetry::sendTether(const StepInput& in, const StepOutput& out) noexcept {
   const SensorFrame& f = in.sensors;
   tautline::tether_state_t m{};
@@ -112,6 +146,7 @@ void Telemetry::sendVehicle(const StepInput& in) noexcept {
   m.phase = as<std::int8_t>(f.vehicle.value.phase);
   m.flight_mode = f.vehicle.value.flight_mode;
   m.flags = f.vehicle.value.flags;
+  m.protocol = as<std::int8_t>(f.vehicle.value.protocol);
   put(m.attitude_wxyz, f.attitude.value.R_WB);
   m.yaw_rad = yawOf(f.attitude.value.R_WB);
   m.gimbal_pitch_rad = f.gimbal.value.pitch;
@@ -189,7 +224,26 @@ void Telemetry::sendEvent(Time now, const StationEvent& event) noexcept {
       separator = " ";
     }
   }
-  sendText(now, event.code);
+  if (event.code == EventCode::kConditionCame || event.code == EventCode::kConditionWent) {
+    sendCondition(now, event);
+  } else {
+    sendText(now, event.code);
+  }
+}
+
+/// event_.text is begun.
+void Telemetry::sendCondition(Time now, const StationEvent& event) noexcept {
+  const EventText& text = textOf(event.code);
+  const ConditionInfo& info = infoOf(event.condition);
+  const bool came = event.code == EventCode::kConditionCame;
+  const bool warns = came && info.kind == ConditionKind::kWarns;
+  event_.severity = as<std::int8_t>(warns ? Severity::kWarning : text.severity);
+  event_.code = kFirstConditionCode + 2 * as<std::int32_t>(event.condition) + (came ? 0 : 1);
+  event_.text.append(info.name).append(": ").append(info.text);
+  if (came) appendMeasured(event_.text, event, info.unit);
+  event_.reaction.assign(text.reaction);
+  event_.remedy.assign(came ? info.remedy : text.remedy);
+  send(channel::kEvent, event_, now);
 }
 
 /// event_.text is there already.

@@ -93,12 +93,14 @@ class Telemetry {
   }
   void sendInput(const StepInput& in) noexcept;
   void sendStation(Time now, const StepOutput& out) noexcept;
+  void sendSafety(Time now, const StepOutput& out) noexcept;
   void sendTether(const StepInput& in, const StepOutput& out) noexcept;
   void sendVehicle(const StepInput& in) noexcept;
   void sendEstimate(Time now, const StepOutput& out) noexcept;
   void sendCommand(Time now, const VehicleCommand& command) noexcept;
   void sendMission(Time now, const StepOutput& out) noexcept;
   void sendEvent(Time now, const StationEvent& event) noexcept;
+  void sendCondition(Time now, const StationEvent& event) noexcept;
   void sendText(Time now, EventCode code) noexcept;
 
   // In operator_telemetry.cpp: what operators are told of their own dealings.
@@ -109,7 +111,6 @@ class Telemetry {
                            const OperatorName& name) noexcept;
   void sendAuthority(Time now, const OperatorDialogue& operators) noexcept;
   void sendFaults(Time now, const FaultLog& faults) noexcept;
-  void sendSafety(const StepInput& in, const StepOutput& out) noexcept;
   void patchParams(const ParameterChange& change) noexcept;
   [[nodiscard]] std::int64_t unixMicroseconds(Time t) const noexcept {
     return toMicroseconds(t + unix_offset_);
@@ -123,6 +124,7 @@ class Telemetry {
   Time next_authority_{};
   Time next_faults_{};
   Time next_safety_{};
+  ConditionSet safety_told_;
   bool fault_was_latched_{false};
   std::size_t faults_told_{0};
   const AckCounts* inbox_counts_{nullptr};

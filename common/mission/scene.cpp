@@ -15,36 +15,6 @@ namespace {
 constexpr int kSceneFileVersion = 1;
 constexpr Range kCoordinate{-1000.0, 1000.0};
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-/// A point of space in the floor plane, in the order of a footprint's corners.
-Eigen::Vector2d floorPoint(const Eigen::Vector3d& p) { return {p.z(), p.x()}; }
-
-bool insidePolygon(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& polygon) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Eigen::Vector2d& a = polygon[i];
-    const Eigen::Vector2d& b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) &&
-        p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y())) {
-      inside = !inside;
-    }
-  }
-  return inside;
-}
-
-double distanceToOutline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& polygon) {
-  double nearest = std::numeric_limits<double>::max();
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Eigen::Vector2d edge = polygon[i] - polygon[j];
-    const double t = std::clamp((p - polygon[j]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    nearest = std::min(nearest, (p - polygon[j] - t * edge).norm());
-  }
-  return nearest;
-}
-
 /// True if the closed segments a-b and c-d have a point in common.
 bool segmentsMeet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                   const Eigen::Vector2d& d) {
@@ -84,20 +54,7 @@ bool isSimplePolygon(const std::vector<Eigen::Vector2d>& polygon) {
   return area != 0.0;
 }
 
-/// Cuts [hit.t_in, hit.t_out] down to where lo < p + t d < hi. False if nothing is left.
-bool clip(double p, double d, double lo, double hi, SegmentHit& hit) {
-  if (d == 0.0) return p > lo && p < hi;
-  const double t_lo = (lo - p) / d;
-  const double t_hi = (hi - p) / d;
-  hit.t_in = std::max(hit.t_in, std::min(t_lo, t_hi));
-  hit.t_out = std::min(hit.t_out, std::max(t_lo, t_hi));
-  return hit.t_in < hit.t_out;
-}
-
-/// Exterior distance of a box from its signed distances along two groups of axes.
-double combine(double a, double b) {
-  return std::hypot(std::max(a, 0.0), std::max(b, 0.0)) + std::min(std::max(a, b), 0.0);
-}
+PrismView viewOf(const Prism& prism) { return {prism.footprint, prism.y_min, prism.y_max}; }
 
 bool contains(const Scene& scene, const Eigen::Vector3d& p) {
   return (p.array() >= scene.min.array()).all() && (p.array() <= scene.max.array()).all();
@@ -250,33 +207,7 @@ std::optional<SegmentHit> intersect(const Eigen::Vector3d& p, const Eigen::Vecto
 
 std::optional<SegmentHit> intersect(const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                                     const Prism& prism) {
-  SegmentHit slab{0.0, 1.0};
-  if (!clip(p.y(), q.y() - p.y(), prism.y_min, prism.y_max, slab)) return std::nullopt;
-  // Between two neighbouring crossings of the outline the line is wholly inside or wholly outside:
-  // test the middle.
-  const Eigen::Vector2d a = floorPoint(p);
-  const Eigen::Vector2d d = floorPoint(q) - a;
-  std::vector<double> cuts{slab.t_in, slab.t_out};
-  const std::vector<Eigen::Vector2d>& polygon = prism.footprint;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Eigen::Vector2d edge = polygon[i] - polygon[j];
-    const double determinant = cross(d, edge);
-    if (determinant == 0.0) continue;
-    const double t = cross(polygon[j] - a, edge) / determinant;
-    if (t > slab.t_in && t < slab.t_out) cuts.push_back(t);
-  }
-  std::sort(cuts.begin(), cuts.end());
-  std::optional<SegmentHit> hit;
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    if (cuts[i] == cuts[i + 1]) continue;
-    if (insidePolygon(a + 0.5 * (cuts[i] + cuts[i + 1]) * d, polygon)) {
-      if (!hit) hit = SegmentHit{cuts[i], cuts[i + 1]};
-      hit->t_out = cuts[i + 1];
-    } else if (hit) {
-      break;
-    }
-  }
-  return hit;
+  return intersect(p, q, viewOf(prism));
 }
 
 std::optional<SceneHit> firstHit(const Eigen::Vector3d& p, const Eigen::Vector3d& q,
@@ -299,9 +230,7 @@ double signedDistance(const Eigen::Vector3d& p, const Box& box) {
 }
 
 double signedDistance(const Eigen::Vector3d& p, const Prism& prism) {
-  const double outline = distanceToOutline(floorPoint(p), prism.footprint);
-  const double horizontal = insidePolygon(floorPoint(p), prism.footprint) ? -outline : outline;
-  return combine(horizontal, std::max(prism.y_min - p.y(), p.y() - prism.y_max));
+  return signedDistance(p, viewOf(prism));
 }
 
 double clearance(const Eigen::Vector3d& p, const Scene& scene) {

@@ -18,6 +18,8 @@
 
 #include <Eigen/Core>
 
+#include "common/prism.h"
+
 namespace tautline {
 
 /// Axis-aligned solid box, min < max in every component.
@@ -78,13 +80,6 @@ struct Scene {
 
 /// The same scene with the reel outlet as origin, so in W; its floor is then at -reel.y.
 [[nodiscard]] Scene sceneInWorld(const Scene& scene);
-
-/// The part p + t (q - p), t_in <= t <= t_out in [0, 1], of a line from p to q that is inside an
-/// obstacle.
-struct SegmentHit {
-  double t_in{0.0};
-  double t_out{0.0};
-};
 
 /// First stretch of the line p-q in the interior of the obstacle, or nothing. Merely touching a
 /// face or an edge is no hit.

@@ -24,6 +24,7 @@
 
 #include "common/error.h"
 #include "common/fields.h"
+#include "common/fixed_list.h"
 #include "common/toml/toml_file.h"
 #include "common/toml/toml_writer.h"
 
@@ -50,6 +51,26 @@ class ConfigReader {
     std::size_t index = 0;
     if (table_.readChoice(key, texts, index)) value = names[index].value;
   }
+  template <std::size_t N>
+  void field(const char* key, FixedList<Eigen::Vector2d, N>& value, Range range,
+             const char* /*doc*/) {
+    std::vector<Eigen::Vector2d> points;
+    if (!table_.read(key, points, range)) return;
+    value.clear();
+    for (const Eigen::Vector2d& point : points)
+      if (!value.add(point)) throw tooMany(key, points.size(), N);
+  }
+  template <class Struct, std::size_t N>
+  void rows(const char* key, FixedList<Struct, N>& value, const char* /*doc*/) {
+    std::vector<TomlTable> tables = table_.tables(key);
+    if (tables.size() > N) throw tooMany(key, tables.size(), N);
+    if (!tables.empty()) value.clear();
+    for (TomlTable& table : tables) {
+      Struct row{};
+      readStruct(std::move(table), row);
+      value.add(row);
+    }
+  }
   template <class Struct>
   void section(const char* key, Struct& value) {
     for (TomlTable& table : table_.table(key)) readStruct(std::move(table), value);
@@ -71,13 +92,16 @@ class ConfigReader {
   }
 
  private:
+  [[nodiscard]] InputError tooMany(const char* key, std::size_t count, std::size_t room) const;
+
   TomlTable table_;
 };
 
 /// Visitor of common/fields.h that writes a struct with its documentation.
 class ConfigWriter {
  public:
-  explicit ConfigWriter(std::string path) : path_(std::move(path)) {}
+  /// @param row the table is one of an array of tables.
+  explicit ConfigWriter(std::string path, bool row = false) : path_(std::move(path)), row_(row) {}
 
   template <class T>
   void field(const char* key, const T& value, const char* doc) {
@@ -95,6 +119,19 @@ class ConfigWriter {
       allowed += (allowed.empty() ? "" : ", ") + std::string(entry.name);
     line(key, tomlText(std::string(nameOf(value, names))), doc, allowed);
   }
+  template <std::size_t N>
+  void field(const char* key, const FixedList<Eigen::Vector2d, N>& value, Range range,
+             const char* doc) {
+    line(key, tomlText(value.all()), doc, rangeText(range));
+  }
+  template <class Struct, std::size_t N>
+  void rows(const char* key, FixedList<Struct, N>& value, const char* /*doc*/) {
+    for (Struct& row : value.all()) {
+      ConfigWriter inner(path_.empty() ? key : path_ + "." + key, true);
+      row.fields(inner);
+      sections_ += inner.text();
+    }
+  }
   template <class Struct>
   void section(const char* key, Struct& value) {
     ConfigWriter inner(path_.empty() ? key : path_ + "." + key);
@@ -104,13 +141,15 @@ class ConfigWriter {
 
   /// Keys of a table stand before its sub-tables, whatever the order of the fields.
   [[nodiscard]] std::string text() const {
-    return (path_.empty() ? "" : "\n[" + path_ + "]\n") + keys_ + sections_;
+    const std::string header = row_ ? "[[" + path_ + "]]" : "[" + path_ + "]";
+    return (path_.empty() ? "" : "\n" + header + "\n") + keys_ + sections_;
   }
 
  private:
   void line(const char* key, const std::string& value, const char* doc, const std::string& allowed);
 
   std::string path_;
+  bool row_;
   std::string keys_;
   std::string sections_;
 };

@@ -62,6 +62,14 @@ std::string tomlText(const Eigen::Vector3d& value) {
   return "[" + tomlText(value.x()) + ", " + tomlText(value.y()) + ", " + tomlText(value.z()) + "]";
 }
 
+std::string tomlText(std::span<const Eigen::Vector2d> points) {
+  std::string text;
+  for (const Eigen::Vector2d& p : points)
+    text += (text.empty() ? "" : ", ") + std::string("[") + tomlText(p.x()) + ", " +
+            tomlText(p.y()) + "]";
+  return "[" + text + "]";
+}
+
 std::string rangeText(Range range) {
   if (isBare(range.min) && isBare(range.max)) return "any finite number";
   if (isBare(range.max)) return "at least " + shortest(range.min);

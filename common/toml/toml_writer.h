@@ -5,6 +5,7 @@
 /// bits. Not real-time safe: start-up only.
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,7 @@ namespace tautline {
 [[nodiscard]] std::string tomlText(bool value);
 [[nodiscard]] std::string tomlText(const std::string& value);  ///< Quoted and escaped.
 [[nodiscard]] std::string tomlText(const Eigen::Vector3d& value);
+[[nodiscard]] std::string tomlText(std::span<const Eigen::Vector2d> points);
 
 /// "0.1 to 5", "at least 0", "at most 1", or "any finite number".
 [[nodiscard]] std::string rangeText(Range range);

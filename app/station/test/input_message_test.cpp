@@ -29,11 +29,16 @@ tautline::station_input_t randomMessage(std::mt19937_64& random) {
   m.has_command = 1;
   m.command_verb = static_cast<std::int8_t>(random() % 8);
   for (std::int8_t* flag : {&m.reel_valid, &m.angles_valid, &m.attitude_valid, &m.gimbal_valid,
-                            &m.vehicle_valid, &m.ground_valid, &m.link_connected}) {
+                            &m.vehicle_valid, &m.ground_valid, &m.link_connected, &m.real_time,
+                            &m.clock_synchronized, &m.recorder_recording}) {
     *flag = static_cast<std::int8_t>(random() % 2);
   }
   m.reel_has_tension = 1;
   m.has_altitude = 1;
+  m.recorder_heard = 1;
+  m.run_mode = static_cast<std::int8_t>(random() % 3);
+  m.device_reality = static_cast<std::int8_t>(random() % 3);
+  m.vehicle_protocol = static_cast<std::int8_t>(random() % 3);
   m.link_fault = static_cast<std::int8_t>(random() % kLinkFaultNames.size());
   m.vehicle_phase = static_cast<std::int8_t>(random() % 6);
   m.flight_mode = static_cast<std::int16_t>(random() % 256);
@@ -55,6 +60,7 @@ TEST(InputMessage, AbsentValuesStayAbsent) {
   EXPECT_FALSE(in.command.has_value());
   EXPECT_FALSE(in.sensors.reel.value.tension.has_value());
   EXPECT_FALSE(in.sensors.angles.value.altitude.has_value());
+  EXPECT_FALSE(in.host.recorder.has_value());
   EXPECT_EQ(in.sensors.reel.sequence, 0U);
 }
 

@@ -168,5 +168,48 @@ TEST(RangeText, SaysOnlyWhatIsBounded) {
   EXPECT_EQ(rangeText({}), "any finite number");
 }
 
+struct Area {
+  FixedList<Eigen::Vector2d, 4> corners_m;
+  double height_m{1.0};
+  template <class Visitor>
+  void fields(Visitor& v) {
+    v.field("corners_m", corners_m, Range{-10, 10}, "in order");
+    v.field("height_m", height_m, Range{0, 10}, "above the floor");
+  }
+};
+struct Areas {
+  FixedList<Area, 2> areas;
+  FilterConfig filter;
+  template <class Visitor>
+  void fields(Visitor& v) {
+    v.rows("areas", areas, "to stay out of");
+    v.section("filter", filter);
+  }
+};
+
+TEST(ConfigFile, RowsComeBackAsTheyWent) {
+  Areas areas;
+  Area area;
+  ASSERT_TRUE(area.corners_m.add({0.1, 0.2}) && area.corners_m.add({1.0 / 3.0, -5.0}));
+  ASSERT_TRUE(areas.areas.add(area));
+  area.height_m = 7.0;
+  ASSERT_TRUE(areas.areas.add(area));
+  const auto back = parseConfig<Areas>(dumpConfig(areas), "dump");
+  ASSERT_EQ(back.areas.all().size(), 2U);
+  EXPECT_EQ(back.areas.all()[1].height_m, 7.0);
+  ASSERT_EQ(back.areas.all()[0].corners_m.all().size(), 2U);
+  EXPECT_EQ(back.areas.all()[0].corners_m.all()[1], Eigen::Vector2d(1.0 / 3.0, -5.0));
+  EXPECT_EQ(dumpConfig(back), dumpConfig(areas));
+}
+
+TEST(ConfigFile, MoreRowsOrPointsThanThereIsRoomForAreRefused) {
+  const std::string row = "[[areas]]\nheight_m = 2\n";
+  EXPECT_NO_THROW((void)parseConfig<Areas>(row + row, "rows"));
+  EXPECT_THROW((void)parseConfig<Areas>(row + row + row, "rows"), InputError);
+  EXPECT_THROW((void)parseConfig<Areas>(
+                   "[[areas]]\ncorners_m = [[0, 0], [0, 1], [1, 1], [1, 0], [2, 2]]\n", "points"),
+               InputError);
+}
+
 }  // namespace
 }  // namespace tautline

@@ -1,0 +1,167 @@
+#include "app/station/condition_monitor.h"
+
+#include "app/station/station_config.h"
+#include "app/station/vehicle_signs.h"
+#include "common/tether_geometry.h"
+
+namespace tautline {
+namespace {
+
+using C = Condition;
+
+bool isFlying(const SensorFrame& f) noexcept {
+  const VehiclePhase phase = f.vehicle.value.phase;
+  return f.vehicle.sequence > 0 &&
+         (phase == VehiclePhase::kFlying || phase == VehiclePhase::kLanding);
+}
+
+/// A stream's newest sample may be used.
+template <class T>
+bool isGood(const Sample<T>& sample, const StreamHealth& health) noexcept {
+  return sample.valid && !health.has(SensorFault::kRange);
+}
+
+/// What no single range can say: places that the configuration itself makes impossible to fly.
+bool isUnflyable(const CoreConfig& config) {
+  const GuidanceConfig& guidance = config.guidance;
+  const Eigen::Vector3d hover =
+      guidance.home_position_m + Eigen::Vector3d(0.0, guidance.takeoff_height_m, 0.0);
+  Findings at_hover;
+  Fence(config.fence).update({true, hover.norm(), hover}, at_hover);
+  const PowerConfig& power = config.detect.power;
+  return !at_hover.raised.empty() || hover.norm() > config.limits.tether_length_m ||
+         config.localizer.nominal_tension_n >= config.detect.tether.max_tension_n ||
+         power.battery_critical_v > power.battery_low_v;
+}
+
+}  // namespace
+
+ConditionMonitor::ConditionMonitor(const CoreConfig& config)
+    : config_(config),
+      jump_(config.detect.jump),
+      lean_(config.detect.tether.lean_time_s, config.detect.tether.least_lean_angle_rad,
+            config.localizer.vehicle_weight_n),
+      tether_(config.detect.tether),
+      contact_(config.detect.contact, config.fence.obstacles),
+      oscillation_(config.detect.oscillation),
+      fence_(config.fence),
+      power_(config.detect.power),
+      link_(config.detect.link),
+      host_(config.detect.host),
+      parked_(config.detect.parked, config.guidance.home_position_m),
+      config_bad_(isUnflyable(config)) {}
+
+ConditionSet ConditionMonitor::update(const MonitorInput& in) noexcept {
+  findings_ = {};
+  findings_.raised = in.facts;
+  watchSensors(in);
+  watchTether(in);
+  watchSpace(in);
+  watchVehicle(in);
+  const LinkStatus& link = in.sensors->link;
+  link_.update(in.now, link.lines_ok, link.lines_bad + link.check_errors, findings_);
+  host_.update(in.now, !isIn(in.mode, kFlyingModes), *in.host, findings_);
+  findings_.report(C::kLinkLost, !link.connected);
+  findings_.report(C::kLinkFault, link.fault != LinkFault::kNone);
+  findings_.report(C::kOverruns, in.missed_in_a_row >= config_.overruns_in_a_row,
+                   in.missed_in_a_row, config_.overruns_in_a_row);
+  findings_.report(C::kConfigBad, config_bad_);
+  return filter_.update(in.now, findings_.raised);
+}
+
+void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
+  const SensorHealth& health = *in.health;
+  const auto stale = [&](Condition c, SensorStream stream) {
+    const StreamHealth& s = health[stream];
+    findings_.report(c, s.has(SensorFault::kMissing) || s.has(SensorFault::kStale), s.age,
+                     s.stale_after);
+  };
+  stale(C::kReelStale, SensorStream::kReel);
+  stale(C::kAnglesStale, SensorStream::kAngles);
+  stale(C::kAttitudeStale, SensorStream::kAttitude);
+  stale(C::kVehicleStale, SensorStream::kVehicle);
+  const StreamHealth& reel = health[SensorStream::kReel];
+  const StreamHealth& angles = health[SensorStream::kAngles];
+  findings_.report(C::kReelStuck, reel.has(SensorFault::kStuck));
+  findings_.report(C::kAnglesStuck, angles.has(SensorFault::kStuck));
+
+  const SensorFrame& f = *in.sensors;
+  SampledLength length;
+  if (isGood(f.reel, reel)) length = {f.reel.sequence, f.reel.time, f.reel.value.length};
+  SampledAngles direction;
+  if (isGood(f.angles, angles))
+    direction = {f.angles.sequence, f.angles.time, f.angles.value.theta, f.angles.value.phi};
+  jump_.update(length, direction, findings_);
+
+  const bool parked = !isIn(in.mode, kFlyingModes) && f.vehicle.value.phase == VehiclePhase::kIdle;
+  std::optional<double> L_total, phi;
+  if (parked && reel.ok()) L_total = f.reel.value.length;
+  if (parked && angles.ok()) phi = f.angles.value.phi;
+  parked_.update(L_total, phi, findings_);
+}
+
+void ConditionMonitor::watchTether(const MonitorInput& in) noexcept {
+  const SensorFrame& f = *in.sensors;
+  const Estimate& e = *in.estimate;
+  const StreamHealth& reel = (*in.health)[SensorStream::kReel];
+  findings_.report(C::kLocalizationLost, !e.usable(), e.nis, config_.localizer.health.lost_nis);
+  lean_.update(f.attitude, e.theta_tangent, e.phi);
+  TetherWatchInput t;
+  t.flying = isFlying(f) && e.usable();
+  t.L_total = f.reel.value.length;
+  t.L_max = config_.limits.tether_length_m;
+  t.L_free = e.L_free;
+  t.theta = e.theta_tangent;
+  t.phi = e.phi;
+  t.lean_angle = lean_.angle();
+  if ((*in.health)[SensorStream::kAttitude].ok()) t.T_lean = lean_.tension();
+  if (reel.ok()) t.T_reel = f.reel.value.tension;
+  t.w = config_.localizer.tether_weight_n_per_m;
+  if (in.last_command->engaged) {
+    t.length_rate = in.last_command->length_rate;
+    t.elevation_rate = in.last_command->elevation_rate;
+    t.azimuth_rate = in.last_command->azimuth_rate;
+  }
+  tether_.update(in.now, t, findings_);
+}
+
+void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
+  const SensorFrame& f = *in.sensors;
+  const Estimate& e = *in.estimate;
+  const bool flying = isFlying(f);
+  if (e.usable()) fence_.update({flying, f.reel.value.length, e.p_WD}, findings_);
+
+  ContactWatchInput c;
+  c.flying = flying;
+  c.usable = e.usable();
+  c.p_WA = in.anchor->p_WA;
+  c.p_WD = e.p_WD;
+  c.nis = e.nis;
+  if (f.angles.valid && f.angles.value.altitude) {
+    const double height = e.p_WD.y() - config_.guidance.home_position_m.y();
+    c.height_residual = *f.angles.value.altitude - height;
+  }
+  contact_.update(in.now, c, findings_);
+
+  std::optional<Eigen::Vector3d> sensed;
+  if (flying && f.angles.valid) {
+    const TetherAngles& angles = f.angles.value;
+    sensed = in.anchor->p_WA + toCartesian({e.L_free, angles.theta, angles.phi});
+  }
+  oscillation_.update(in.now, sensed, findings_);
+}
+
+void ConditionMonitor::watchVehicle(const MonitorInput& in) noexcept {
+  const SensorFrame& f = *in.sensors;
+  std::optional<double> battery, backup;
+  // A device that has no such sensor says 0.
+  if (f.ground.valid && f.ground.value.battery_voltage > 0.0)
+    battery = f.ground.value.battery_voltage;
+  if (f.vehicle.valid && f.vehicle.value.backup_battery_voltage > 0.0)
+    backup = f.vehicle.value.backup_battery_voltage;
+  power_.update(battery, backup, findings_);
+  if (f.vehicle.sequence > 0) findings_.raised = findings_.raised | conditionsOf(f.vehicle.value);
+  findings_.report(C::kVehicleFlying, isFlying(f));
+}
+
+}  // namespace tautline

@@ -1,0 +1,40 @@
+#pragma once
+
+/// @file
+/// Settings of all detectors but the fence, which has its own section.
+
+#include "supervision/detect/contact_watch.h"
+#include "supervision/detect/host_watch.h"
+#include "supervision/detect/jump_detector.h"
+#include "supervision/detect/link_watch.h"
+#include "supervision/detect/oscillation_watch.h"
+#include "supervision/detect/parked_check.h"
+#include "supervision/detect/power_watch.h"
+#include "supervision/detect/tether_watch.h"
+
+namespace tautline {
+
+struct DetectConfig {
+  JumpConfig jump;
+  TetherWatchConfig tether;
+  ContactWatchConfig contact;
+  OscillationConfig oscillation;
+  PowerConfig power;
+  LinkWatchConfig link;
+  HostWatchConfig host;
+  ParkedCheckConfig parked;
+
+  template <class Visitor>
+  void fields(Visitor& v) {
+    v.section("jump", jump);
+    v.section("tether", tether);
+    v.section("contact", contact);
+    v.section("oscillation", oscillation);
+    v.section("power", power);
+    v.section("link", link);
+    v.section("host", host);
+    v.section("parked", parked);
+  }
+};
+
+}  // namespace tautline
