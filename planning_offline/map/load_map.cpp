@@ -39,7 +39,8 @@ constexpr Kind kScene{".toml", "a scene", "", sceneMap};
 /// Text of any kind, so that the TOML reader's own errors make sense.
 bool isText(std::string_view bytes) {
   return std::none_of(bytes.begin(), bytes.end(), [](char c) {
-    return (c >= 0 && c < ' ' && std::string_view("\t\r\n\f").find(c) == std::string_view::npos);
+    return (static_cast<unsigned char>(c) < ' ' &&
+            std::string_view("\t\r\n\f").find(c) == std::string_view::npos);
   });
 }
 

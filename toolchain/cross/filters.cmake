@@ -8,6 +8,6 @@ set(TAUTLINE_CROSS_FILTER_drivers_test
 set(TAUTLINE_CROSS_FILTER_estimation_test
   "PublishedCatenary*:PositionFix*:SensorHealth*:LeanTension*:LeanModel*:ThrustElevation*:MapTension.Agrees*:TetherFilter*")
 set(TAUTLINE_CROSS_FILTER_control_test "-*Flight*:RealTime*:AllCases*:*AreFiniteAndWithinTheLimits*:CommandGate.NothingItLets*")
-set(TAUTLINE_CROSS_FILTER_station_test "EmulatedMachine*:InputMessage*:MissionStore*-*SurvivesRandomChunks")
+set(TAUTLINE_CROSS_FILTER_station_test "EmulatedMachine*:InputMessage*:MissionStore*:TelemetryTest*-*SurvivesRandomChunks")
 set(TAUTLINE_CROSS_FILTER_lockstep_test "Lockstep.RefusesToArm*:Lockstep.NavigateWithout*")
 set(TAUTLINE_CROSS_FILTER_sim_hil_test NONE)  # the simulator stays on the host

@@ -98,7 +98,7 @@ TEST(FlightLogFile, DamageIsCountedAndReadingGoesOn) {
   const auto cut = logFile("cut.lcm");
   const std::size_t hole = bytes.size() / 2;
   bytes = bytes.substr(0, hole) +
-          bytes.substr(hole + 5000, bytes.size() - hole - 5000 - 17);  // a hole, and a cut end
+          bytes.substr(hole + 5003, bytes.size() - hole - 5003 - 17);  // a hole, and a cut end
   std::ofstream(cut, std::ios::binary) << bytes;
   const FlightLog log = readFlightLog(cut);
   EXPECT_GE(log.damaged_places, 1);

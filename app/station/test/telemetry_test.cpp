@@ -10,6 +10,7 @@
 
 #include "app/station/events.h"
 #include "common/testing/malloc_guard.h"
+#include "lcmtypes/channels.h"
 
 namespace tautline {
 namespace {
