@@ -4,10 +4,23 @@
 /// The cable between driver and simulated device in lock-step: bytes in memory, no time passes in
 /// them.
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
 #include "drivers/byte_port.h"
 #include "sim_hil/simulator.h"
 
 namespace tautline::bench {
+
+/// Which of the device's messages arrive.
+struct MessageFilter {
+  char end{'\n'};  ///< Last byte of a message.
+  std::function<bool(const std::string& message)> keep;
+};
 
 /// A BytePort whose other end is a Simulator. Unplugging it makes both directions silent.
 class MemoryPort final : public BytePort {
@@ -22,11 +35,18 @@ class MemoryPort final : public BytePort {
 
   void unplug() noexcept { connected_ = false; }
   void plug() noexcept;
+  /// From now on only the messages that the filter keeps arrive; the heap is used.
+  void cut(MessageFilter filter) { filter_ = std::move(filter); }
 
  private:
+  [[nodiscard]] std::size_t readFiltered(std::span<std::uint8_t> buffer);
+
   sim::Simulator& simulator_;
   PortCounters counters_;
   bool connected_{true};
+  std::optional<MessageFilter> filter_;
+  std::string message_;   ///< Not yet whole.
+  std::string filtered_;  ///< Kept, not yet read.
 };
 
 }  // namespace tautline::bench
