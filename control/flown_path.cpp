@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <utility>
 
 #include "control/segment.h"
 
@@ -28,7 +29,8 @@ void FlownPath::record(const Eigen::Vector3d& p_WD, const ContactStack& contacts
   if (bend == kMaxBends) return clear();
   if (bend != bend_) {
     append({.p_WD = p_WD, .bend = bend_});
-    bend_ = bend;
+    const int bend_before = std::exchange(bend_, bend);
+    if (tether_known) forgetContact(bend_before);
     return;
   }
   if ((p_WD - point(count_ - 1)).norm() < kSpacing) return;
@@ -41,6 +43,20 @@ void FlownPath::cutAfter(int i) noexcept {
   bend_ = at(i + 1).bend;
   count_ = i + 1;
   dropUnusedBends();
+}
+
+int FlownPath::joinFrom(const Eigen::Vector3d& p_WD) const noexcept {
+  constexpr int kMostPassed = 16;
+  int join = count_ - 1;
+  const auto passesAll = [&](int target) {
+    for (int i = target + 1; i < count_; ++i) {
+      if (projectOnSegment(point(i), p_WD, point(target)).cross_track > kSamePlace) return false;
+    }
+    return true;
+  };
+  while (join > 0 && count_ - join <= kMostPassed && at(join).bend == bend_ && passesAll(join - 1))
+    --join;
+  return join;
 }
 
 ContactStack::Change FlownPath::restore(int i, ContactStack& contacts) const noexcept {
@@ -91,15 +107,35 @@ void FlownPath::forgetLoop(const Eigen::Vector3d& p_WD) noexcept {
   for (int i = count_ - 1; i > 0; --i) {
     const SegmentProgress here = projectOnSegment(p_WD, point(i - 1), point(i));
     if (at(i).bend == bend_ && here.cross_track < kSamePlace &&
-        way + (point(i) - here.closest).norm() > kLeastLoop) {
+        way + (point(i) - here.closest).norm() - here.cross_track > kLeastLoop) {
       first = {.p_WD = here.closest, .bend = bend_, .error = at(i).error};
       first_piece = i;
     }
     way += here.length;
   }
-  if (!first) return;
-  points_[static_cast<std::size_t>(first_piece)] = *first;
-  count_ = first_piece + 1;
+  if (first) cutTo(first_piece, *first);
+}
+
+/// A contact is made, and comes off, where the drone is on the line from the anchor below it through
+/// it: the tether itself has lain on the straight way from the one place to the other.
+void FlownPath::forgetContact(int bend_before) noexcept {
+  int off = bend_before;
+  while (off != 0 && bend(off).below != bend_) off = bend(off).below;
+  if (off == 0) return;  // none came off
+  int made = count_ - 1;
+  while (made > 0 && at(made).bend != bend_) --made;
+  const auto isOnTether = [&](const Eigen::Vector3d& p_WD) {
+    const SegmentProgress here = projectOnSegment(p_WD, bend(bend_).p_WC, bend(off).p_WC);
+    return here.along > here.length && here.off_line < kOnTether;
+  };
+  const Point last{.p_WD = point(count_ - 1), .bend = bend_};
+  if (isOnTether(point(made)) && isOnTether(last.p_WD)) cutTo(made + 1, last);
+}
+
+/// Keeps the first `count` points and ends with `last`.
+void FlownPath::cutTo(int count, const Point& last) noexcept {
+  points_[static_cast<std::size_t>(count)] = last;
+  count_ = count + 1;
   dropUnusedBends();
 }
 

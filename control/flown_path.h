@@ -24,7 +24,10 @@ class FlownPath {
   static constexpr double kTolerance = 0.05;  ///< A point this near to the straight line between
                                               ///< its neighbours is left out [m].
   static constexpr double kSamePlace = 0.2;   ///< Closer than this is where it has been before [m].
-  static constexpr double kLeastLoop = 0.6;   ///< A shorter way back to there is no loop [m].
+  static constexpr double kLeastLoop = 0.2;   ///< A way there that is longer than straight by less
+                                              ///< than this is no loop [m].
+  static constexpr double kOnTether = 0.3;    ///< Closer to the tether's line than this a contact is
+                                              ///< made or comes off [m].
 
   /// No way home is known.
   void clear() noexcept { count_ = 0; }
@@ -35,8 +38,9 @@ class FlownPath {
   /// The drone is at p_WD, on this stack; to be called in every cycle of a flight that does not go
   /// back. Where a contact was made or has come off there is a point of its own. With
   /// `tether_known` (it touches nothing but the contacts of the stack) a loop that ends where the
-  /// drone has been before on the same stack is forgotten. When full, the whole path is thinned
-  /// further; with no room left even so, no way home is known any more.
+  /// drone has been before on the same stack is forgotten, and so is the way between a contact's
+  /// making and its coming off. When full, the whole path is thinned further; with no room left
+  /// even so, no way home is known any more.
   void record(const Eigen::Vector3d& p_WD, const ContactStack& contacts,
               bool tether_known) noexcept;
 
@@ -48,6 +52,11 @@ class FlownPath {
 
   /// Point 0 is above home. 0 <= i < count().
   [[nodiscard]] const Eigen::Vector3d& point(int i) const noexcept { return at(i).p_WD; }
+
+  /// Where a drone at p_WD joins the path: its last point, or one before it on the same stack if
+  /// the straight way there is as good as flown: it passes all points between within kSamePlace.
+  /// known() only.
+  [[nodiscard]] int joinFrom(const Eigen::Vector3d& p_WD) const noexcept;
 
   /// Id of the contact that was active on the way from point i - 1 to point i. 0 < i < count().
   [[nodiscard]] int contact(int i) const noexcept { return bend(at(i).bend).id; }
@@ -77,6 +86,8 @@ class FlownPath {
   [[nodiscard]] int bendOf(const ContactStack& contacts) noexcept;
   void append(Point point) noexcept;
   void forgetLoop(const Eigen::Vector3d& p_WD) noexcept;
+  void forgetContact(int bend_before) noexcept;
+  void cutTo(int count, const Point& last) noexcept;
   void thin(double tolerance) noexcept;
   void dropUnusedBends() noexcept;
 

@@ -16,7 +16,7 @@ Route Route::back(const FlownPath& path, const Eigen::Vector3d& p_WD, double dis
   Route out;
   if (!path.known()) return out;
   out.path_ = &path;
-  out.from_ = path.count() - 1;
+  out.from_ = path.joinFrom(p_WD);
   int last = out.from_;
   Eigen::Vector3d start = p_WD;
   double left = distance;

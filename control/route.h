@@ -43,8 +43,8 @@ class Route {
   /// Every waypoint of `plan` in order.
   [[nodiscard]] static Route along(const MissionPlan& plan) noexcept;
 
-  /// From p_WD straight to the last point of `path` and back along it, `distance` [m] in all or to
-  /// its beginning. Each leg has the contacts it was flown out with, so that they are undone in
+  /// From p_WD straight to where it joins `path` and back along it, `distance` [m] in all or to its
+  /// beginning. Each leg has the contacts it was flown out with, so that they are undone in
   /// reverse order. No legs if there is no path.
   [[nodiscard]] static Route back(const FlownPath& path, const Eigen::Vector3d& p_WD,
                                   double distance, double speed) noexcept;
@@ -70,7 +70,7 @@ class Route {
   const MissionPlan* plan_{nullptr};
   const FlownPath* path_{nullptr};
   int count_{0};
-  int from_{0};          ///< Last point of the flown path when the way back began.
+  int from_{0};          ///< Point at which the way back joins the flown path.
   PointTarget point_{};  ///< The single target, or the end of the way back.
 };
 

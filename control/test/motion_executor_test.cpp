@@ -68,7 +68,7 @@ TEST_F(MotionExecutorTest, IsIdleUntilStartedAndAfterAbort) {
   EXPECT_FALSE(executor().pause());
   EXPECT_FALSE(executor().resume());
   EXPECT_FALSE(executor().skip());
-  EXPECT_FALSE(executor().goBack(at({1, 1, 1})));
+  EXPECT_FALSE(executor().goBack(FlownPath{}, 1.0, 0.3, at({1, 1, 1})));
   add({2, 1, 1});
   ASSERT_TRUE(executor().start(*plan_, at({1, 1, 1})));
   EXPECT_EQ(state(), MissionState::kRunning);
@@ -339,27 +339,39 @@ TEST_F(MotionExecutorTest, GoesToASinglePointAndLeavesTheContactsAlone) {
   EXPECT_EQ(state(), MissionState::kCompleted);
 }
 
-TEST_F(MotionExecutorTest, GoesBackTheWayItCameAndUndoesTheContactsInReverse) {
+TEST_F(MotionExecutorTest, GoesBackTheWayFlownAndUndoesTheContactsInReverse) {
   addContact(1, {1, 1, 0});
   addContact(2, {2, 1, 0});
   add({2, 1, 1});
   add({3, 1, 1}, 1);
-  add({4, 1, 1}, 2);
-  add({5, 1, 1}, 2);
+  add({4, 1, 3}, 2);
+  add({5, 1, 3}, 2);
+  FlownPath path;
+  path.begin({1, 1, 1});
+  const auto flyTo = [&](const Eigen::Vector3d& p_WD) {
+    stepAt(p_WD);
+    path.record(p_WD, contacts_, true);
+  };
   ASSERT_TRUE(executor().start(*plan_, at({1, 1, 1})));
-  for (int i = 0; i < 3; ++i) stepAt(plan_->waypoints[static_cast<std::size_t>(i)].p_WD);
-  stepAt({4.4, 1, 1});                                                   // on the way to waypoint 3
-  ASSERT_TRUE(executor().goTo({.p_WD = {4.4, 1, 1}}, at({4.4, 1, 1})));  // operator's hold
-  ASSERT_TRUE(executor().goBack(at({4.4, 1, 1})));
-  const std::vector<Eigen::Vector3d> way{{4, 1, 1}, {3, 1, 1}, {2, 1, 1}, {1, 1, 1}};
+  for (int i = 0; i < 3; ++i) flyTo(plan_->waypoints[static_cast<std::size_t>(i)].p_WD);
+  const Eigen::Vector3d here(4.4, 1, 3);  // on the way to waypoint 3
+  flyTo(here);
+  ASSERT_TRUE(executor().goTo({.p_WD = here}, at(here)));  // operator's hold
+  ASSERT_TRUE(executor().goBack(path, 100.0, 0.25, at(here)));
+  const std::vector<Eigen::Vector3d> way{{4, 1, 3}, {3, 1, 1}, {2, 1, 1}, {1, 1, 1}};
   const std::vector<int> ids{2, 2, 1, 0};
   for (std::size_t i = 0; i < way.size(); ++i) {
     EXPECT_EQ(contacts_.activeId(), ids[i]) << i;
-    EXPECT_EQ(stepAt(way[i] + Eigen::Vector3d(0.4, 0, 0)).control.p_WE, way[i]);
+    const Eigen::Vector3d before = way[i] + Eigen::Vector3d(0.4, 0, 0);
+    EXPECT_EQ(stepAt(before).control.p_WE, way[i]);
+    EXPECT_EQ(stepAt(before).control.speed, 0.25);
+    path.cutAfter(executor().status().waypoint);
     if (i == 1) {  // interrupted: goes on from the leg it was on, not from the far end again
       executor().abort();
-      ASSERT_TRUE(executor().goBack(at(way[i] + Eigen::Vector3d(0.4, 0, 0))));
-      EXPECT_EQ(stepAt(way[i] + Eigen::Vector3d(0.4, 0, 0)).control.p_WE, way[i]);
+      ASSERT_TRUE(executor().goBack(path, 100.0, 0.25, at(before)));
+      EXPECT_EQ(stepAt(before).control.p_WE, way[i]);
+      ASSERT_TRUE(executor().pause());
+      ASSERT_TRUE(executor().resume());
     }
     stepAt(way[i]);
   }

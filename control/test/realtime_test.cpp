@@ -38,6 +38,8 @@ TEST(RealTime, WholeMissionsDoNotAllocate) {
       CommandGate gate({}, plant_config.limits);
       ReelDeadZone reel({});
       KinematicPlant plant(plant_config, path.front(), 1);
+      const auto flown = std::make_unique<FlownPath>();
+      flown->begin(path.front());
 
       const MallocGuard guard;
       ASSERT_TRUE(executor.start(*plan, plant.measure()));
@@ -52,10 +54,11 @@ TEST(RealTime, WholeMissionsDoNotAllocate) {
         const GatedCommand gated = gate.apply(dt, command);
         ASSERT_FALSE(gated.not_finite);
         plant.step(u);
+        flown->record(plant.position(), contacts, true);
         if (i == 200) (void)executor.pause();
         if (i == 210) (void)executor.resume();
         if (i == 220) (void)executor.skip();
-        if (i == 900) (void)executor.goBack(plant.measure());
+        if (i == 900) (void)executor.goBack(*flown, 10.0, 0.3, plant.measure());
       }
       EXPECT_EQ(guard.allocations(), 0) << law->name();
     }

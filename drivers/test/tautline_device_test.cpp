@@ -94,6 +94,14 @@ TEST_P(TautlineDeviceTest, SendsRatesEveryCycleAndTheModeOnChange) {
   EXPECT_EQ(of<bus::ModeCommand>(sent)[0].mode, BusMode::kTakeoff);
 }
 
+TEST_P(TautlineDeviceTest, LandIsTheVehiclesOwnLanding) {
+  VehicleCommand command = flying();
+  command.action = VehicleAction::kLand;
+  const auto modes = of<bus::ModeCommand>(rig_.run(1s, command));
+  ASSERT_EQ(modes.size(), 10U);
+  for (const bus::ModeCommand& m : modes) EXPECT_EQ(m.mode, BusMode::kLand);
+}
+
 TEST_P(TautlineDeviceTest, MotorStopGoesOutAtOnceAlsoDisengaged) {
   rig_.run(20ms);
   VehicleCommand command;

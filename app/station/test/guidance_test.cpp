@@ -1,0 +1,192 @@
+#include "app/station/guidance.h"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "app/station/station_config.h"
+#include "control/control_config.h"
+#include "control/test/kinematic_plant.h"
+
+namespace tautline {
+namespace {
+
+using testing::KinematicPlant;
+using testing::kPlantStep;
+using testing::PlantConfig;
+
+/// Guidance with its law and a kinematic plant, which hangs from whatever anchor is active.
+class GuidanceTest : public ::testing::Test {
+ protected:
+  void enter(Mode mode) {
+    mode_ = mode;
+    entered_ = true;
+    step();
+  }
+  void step(Duration d = fromSeconds(kPlantStep)) {
+    const Duration dt = fromSeconds(kPlantStep);
+    for (const Time end = now_ + d; now_ < end;) {
+      now_ += dt;
+      sensors_.vehicle.sequence += 1;
+      output_ = guidance_.update({.now = now_,
+                                  .dt = dt,
+                                  .mode = mode_,
+                                  .entered = entered_,
+                                  .estimate = plant_.measure(),
+                                  .vehicle = phase_,
+                                  .sensors = &sensors_,
+                                  .plan = nullptr,
+                                  .conditions = conditions_,
+                                  .teleop = sticks_});
+      entered_ = false;
+      RateCommand rates;
+      if (output_.route.active) {
+        rates = law_->update(dt, output_.route.control);
+      } else {
+        rates = {.ok = true,
+                 .length_rate = output_.command.length_rate,
+                 .elevation_rate = output_.command.elevation_rate,
+                 .azimuth_rate = output_.command.azimuth_rate};
+      }
+      plant_.step(rates);
+    }
+  }
+  void takeOff() {
+    enter(Mode::kArmed);
+    phase_ = VehiclePhase::kFlying;
+    enter(Mode::kTakeoff);
+    step(std::chrono::seconds(10));
+    EXPECT_TRUE(guidance_.conditions().has(Condition::kAtTarget));
+    enter(Mode::kHold);
+  }
+  [[nodiscard]] Eigen::Vector3d aboveHome() const {
+    return config_.guidance.home_position_m +
+           Eigen::Vector3d(0, config_.guidance.takeoff_height_m, 0);
+  }
+
+  CoreConfig config_;
+  PlantConfig plant_config_{.noise = 0.1};
+  KinematicPlant plant_{plant_config_, config_.guidance.home_position_m + Eigen::Vector3d(0, .3, 0),
+                        1};
+  Guidance guidance_{config_.guidance, config_.executor, config_.control.composite.pole,
+                     plant_config_.limits};
+  std::unique_ptr<Controller> law_ = makeController(config_.control);
+  SensorFrame sensors_;
+  GuidanceOutput output_;
+  Mode mode_{Mode::kStandby};
+  bool entered_{false};
+  VehiclePhase phase_{VehiclePhase::kIdle};
+  ConditionSet conditions_;
+  std::optional<TeleopRates> sticks_;
+  Time now_{};
+};
+
+TEST_F(GuidanceTest, TeleopIsTheSticksAndWithoutThemAHover) {
+  takeOff();
+  enter(Mode::kTeleop);
+  sticks_ = {.length = 0.2, .elevation = 0.05, .azimuth = -0.1, .yaw = 0.3, .gimbal_pitch = -0.2};
+  step();
+  EXPECT_FALSE(output_.route.active);
+  EXPECT_TRUE(output_.command.engaged && output_.command.reel_controller);
+  EXPECT_EQ(output_.command.length_rate, 0.2);
+  EXPECT_EQ(output_.command.elevation_rate, 0.05);
+  EXPECT_EQ(output_.command.azimuth_rate, -0.1);
+  EXPECT_EQ(output_.command.yaw_rate, 0.3);
+  EXPECT_EQ(output_.command.gimbal_pitch_rate, -0.2);
+  step(std::chrono::seconds(5));
+  const Eigen::Vector3d there = plant_.position();
+  EXPECT_GT((there - aboveHome()).norm(), 0.8);
+  sticks_.reset();
+  step(std::chrono::seconds(10));
+  EXPECT_TRUE(output_.route.active);
+  EXPECT_LT((plant_.position() - there).norm(), 0.2);
+  sticks_ = TeleopRates{.length = -0.1};
+  step(std::chrono::seconds(4));
+  const Eigen::Vector3d nearer = plant_.position();
+  sticks_.reset();
+  step(std::chrono::seconds(10));
+  EXPECT_LT((plant_.position() - nearer).norm(), 0.2) << "where the last sticks ended, not before";
+}
+
+TEST_F(GuidanceTest, ReturnsTheWayTheSticksFlew) {
+  takeOff();
+  enter(Mode::kTeleop);
+  for (const TeleopRates& rates :
+       {TeleopRates{.length = 0.3}, TeleopRates{.azimuth = 0.2}, TeleopRates{.length = -0.1}}) {
+    sticks_ = rates;
+    step(std::chrono::seconds(6));
+  }
+  sticks_.reset();
+  enter(Mode::kReturn);
+  for (int i = 0; i < 60 && !guidance_.conditions().has(Condition::kAtTarget); ++i)
+    step(std::chrono::seconds(1));
+  EXPECT_TRUE(guidance_.conditions().has(Condition::kAtTarget));
+  EXPECT_LT((plant_.position() - aboveHome()).norm(), 0.3);
+}
+
+TEST_F(GuidanceTest, BacksUpByItsDistance) {
+  takeOff();
+  enter(Mode::kTeleop);
+  sticks_ = TeleopRates{.length = 0.3};
+  step(std::chrono::seconds(10));
+  sticks_.reset();
+  step(std::chrono::seconds(3));
+  const Eigen::Vector3d before = plant_.position();
+  enter(Mode::kBackUp);
+  step(std::chrono::seconds(15));
+  EXPECT_TRUE(guidance_.conditions().has(Condition::kAtTarget));
+  EXPECT_NEAR((plant_.position() - before).norm(), config_.guidance.back_up_m, 0.25);
+}
+
+TEST_F(GuidanceTest, WithoutATakeoffNoWayBackIsKnown) {
+  phase_ = VehiclePhase::kFlying;  // a station that was restarted in flight
+  enter(Mode::kHold);
+  step(std::chrono::seconds(3));
+  EXPECT_FALSE(guidance_.knowsWayBack());
+  EXPECT_FALSE(guidance_.conditions().has(Condition::kMissionFailed));
+  const Eigen::Vector3d before = plant_.position();
+  enter(Mode::kReturn);
+  step(std::chrono::seconds(5));
+  EXPECT_TRUE(guidance_.conditions().has(Condition::kMissionFailed));
+  EXPECT_FALSE(guidance_.conditions().has(Condition::kAtTarget));
+  EXPECT_LT((plant_.position() - before).norm(), 0.1);
+}
+
+TEST_F(GuidanceTest, FailsafeHoversAndReelsASlackTetherIn) {
+  takeOff();
+  enter(Mode::kFailsafe);
+  step(std::chrono::seconds(5));
+  EXPECT_TRUE(output_.route.active);
+  EXPECT_LT((plant_.position() - aboveHome()).norm(), 0.35);
+  conditions_.set(Condition::kTetherSlack);
+  step();
+  EXPECT_FALSE(output_.route.active);
+  EXPECT_EQ(output_.command.length_rate, -config_.guidance.slack_reel_in_mps);
+  EXPECT_EQ(output_.command.elevation_rate, 0.0);
+  conditions_ = {};
+  step();
+  EXPECT_TRUE(output_.route.active);
+}
+
+TEST_F(GuidanceTest, LeavesTheMotorsToAVehicleThatLandsByItself) {
+  for (const bool by_itself : {true, false}) {
+    takeOff();
+    phase_ = by_itself ? VehiclePhase::kLanding : VehiclePhase::kFlying;
+    enter(Mode::kDescend);
+    EXPECT_EQ(output_.command.action, VehicleAction::kLand);
+    EXPECT_LT(output_.command.elevation_rate, 0.0);
+    bool stopped = false;
+    for (int i = 0; i < 1000; ++i) {
+      step();
+      stopped = stopped || output_.command.action == VehicleAction::kMotorStop;
+    }
+    EXPECT_EQ(stopped, !by_itself);
+    plant_ = KinematicPlant(plant_config_,
+                            config_.guidance.home_position_m + Eigen::Vector3d(0, .3, 0), 1);
+    phase_ = VehiclePhase::kIdle;
+    enter(Mode::kStandby);
+  }
+}
+
+}  // namespace
+}  // namespace tautline
