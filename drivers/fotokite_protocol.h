@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/fields.h"
+
 namespace tautline::fotokite {
 
 inline constexpr int kDefaultBaud = 115200;  ///< 8N1. The device is USB CDC-ACM and takes any rate.
@@ -123,5 +125,19 @@ enum FlightFlag : std::uint16_t {
   kForceSensorTemperatureInvalid = 1U << 11U,
   kFlyawayCandidate = 1U << 12U,
 };
+inline constexpr std::array<EnumName<FlightFlag>, 13> kFlightFlagNames{
+    {{kMissedTick, "MISSED_TICK"},
+     {kI2cError, "I2C_ERROR"},
+     {kCriticalBattery, "CRIT_LOW_BATT"},
+     {kNoSyncCommands, "NO_SYNC_CMDS"},
+     {kLowLaunchAngle, "LOW_LAUNCH_ANGLE"},
+     {kMotorError, "MOTOR_ERROR"},
+     {kLowBattery, "LOW_BATT"},
+     {kLowBackupBattery, "LOW_BACKUP_BATT"},
+     {kEmergencyLandFlag, "EMERGENCY_LAND"},
+     {kNoTetherDetected, "NO_TETHER_DETECTED"},
+     {kHardKillFlag, "HARD_KILL"},
+     {kForceSensorTemperatureInvalid, "OPTOFORCE_TEMP_INVALID"},
+     {kFlyawayCandidate, "FLYAWAY_CANDIDATE"}}};
 
 }  // namespace tautline::fotokite

@@ -91,6 +91,12 @@ enum VehicleFlag : std::uint8_t {
   kSlackTether = 1U << 3U,
   kMotorFault = 1U << 4U,
 };
+inline constexpr std::array<EnumName<VehicleFlag>, 5> kVehicleFlagNames{
+    {{kLowBattery, "LOW_BATTERY"},
+     {kCriticalBattery, "CRITICAL_BATTERY"},
+     {kNoCommands, "NO_COMMANDS"},
+     {kSlackTether, "SLACK_TETHER"},
+     {kMotorFault, "MOTOR_FAULT"}}};
 
 /// Third field of kAnglesId.
 enum class SensorStatus : std::uint8_t { kGood = 0, kStarting = 1, kFault = 2 };

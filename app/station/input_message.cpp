@@ -129,13 +129,14 @@ StepInput inputOf(const tautline::station_input_t& m) noexcept {
                                  .value = m.command_value,
                                  .name = nameFromBytes(m.command_name)};
   }
-  if (m.has_heartbeat) in.heartbeat = Heartbeat{m.heartbeat_session, nameFromBytes(m.heartbeat_name)};
+  if (m.has_heartbeat)
+    in.heartbeat = Heartbeat{m.heartbeat_session, nameFromBytes(m.heartbeat_name)};
   if (m.has_sticks) {
-    in.sticks = Sticks{m.sticks_session,
-                       m.sticks_dead_man != 0,
-                       {m.sticks_length_rate_mps, m.sticks_elevation_rate_radps,
-                        m.sticks_azimuth_rate_radps, m.sticks_yaw_rate_radps,
-                        m.sticks_gimbal_pitch_rate_radps}};
+    in.sticks = Sticks{
+        m.sticks_session,
+        m.sticks_dead_man != 0,
+        {m.sticks_length_rate_mps, m.sticks_elevation_rate_radps, m.sticks_azimuth_rate_radps,
+         m.sticks_yaw_rate_radps, m.sticks_gimbal_pitch_rate_radps}};
   }
   if (m.has_turned_away) {
     in.turned_away = TurnedAway{m.turned_away_session, m.turned_away_sequence,

@@ -21,8 +21,7 @@ Request OperatorDialogue::take(const StepInput& in, Mode mode) noexcept {
   }
   if (in.chunk != nullptr) {
     const tautline::mission_chunk_t& chunk = *in.chunk;
-    AckResult result =
-        authority_.decideChunk(in.now, chunk.session, nameFromBytes(chunk.name));
+    AckResult result = authority_.decideChunk(in.now, chunk.session, nameFromBytes(chunk.name));
     if (result == AckResult::kAccepted && !missions_.add(chunk)) result = AckResult::kBadMission;
     say(chunk.session, chunk.sequence, result);
     ack_->detail = missions_.receivedWaypoints();
@@ -78,8 +77,7 @@ void OperatorDialogue::answer(Time now, const SupervisorOutput& decision) noexce
     if (asked_->request == Request::kDisarm) faults_.acknowledge();
     sayCommand(*asked_, AckResult::kAccepted);
   } else {
-    sayCommand(*asked_,
-               decision.refusal.empty() ? AckResult::kOutOfMode : AckResult::kRefused,
+    sayCommand(*asked_, decision.refusal.empty() ? AckResult::kOutOfMode : AckResult::kRefused,
                decision.refusal);
   }
 }

@@ -22,9 +22,9 @@ struct StepInput;
 
 /// Who asked for what, and what became of it: one line of the log.
 struct AuditRecord {
-  OperatorName name{};     ///< Empty: only the session is known.
+  OperatorName name{};  ///< Empty: only the session is known.
   std::int64_t session{0};
-  const char* verb{""};    ///< As the operator typed it; static text.
+  const char* verb{""};  ///< As the operator typed it; static text.
   AckResult result{AckResult::kAccepted};
 };
 

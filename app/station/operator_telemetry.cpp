@@ -40,9 +40,9 @@ void appendOperator(std::string& text, const OperatorName& name, std::int64_t se
     return;
   }
   std::array<char, 24> hex{};
-  const auto end = std::to_chars(hex.data(), hex.data() + hex.size(),
-                                 static_cast<std::uint64_t>(session), 16)
-                       .ptr;
+  const auto end =
+      std::to_chars(hex.data(), hex.data() + hex.size(), static_cast<std::uint64_t>(session), 16)
+          .ptr;
   text.append("session ").append(hex.data(), static_cast<std::size_t>(end - hex.data()));
 }
 
@@ -130,7 +130,8 @@ void Telemetry::patchParams(const ParameterChange& change) noexcept {
                           std::string_view after) {
     for (std::size_t at = toml.find(text, from); at != std::string::npos;
          at = toml.find(text, at + 1)) {
-      if (at > 0 && toml[at - 1] == before && toml.compare(at + text.size(), after.size(), after) == 0)
+      if (at > 0 && toml[at - 1] == before &&
+          toml.compare(at + text.size(), after.size(), after) == 0)
         return at;
     }
     return std::string::npos;

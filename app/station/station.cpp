@@ -62,8 +62,7 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
   const ConditionSet conditions_before = out_.conditions;
   out_.anchor = guidance_.contacts().anchor();
   out_.estimate = localizer_.update(in.now, in.sensors, last_command_, out_.anchor);
-  out_.conditions =
-      assess(in, out_.estimate) | dialogue_.conditions(in.now, supervisor_.mode());
+  out_.conditions = assess(in, out_.estimate) | dialogue_.conditions(in.now, supervisor_.mode());
   tellChanges(conditions_before);
   tellLink(in.sensors.link.fault);
 
