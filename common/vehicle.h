@@ -186,8 +186,8 @@ struct SensorFrame {
   LinkStatus link;
 };
 
-/// What the operator's sticks ask for: rates of the vehicle's own set-points, relative to the active
-/// anchor, as in VehicleCommand.
+/// What the operator's sticks ask for: rates of the vehicle's own set-points, relative to the
+/// active anchor, as in VehicleCommand.
 struct TeleopRates {
   double length{0.0};        ///< dL/dt [m/s], pay-out positive.
   double elevation{0.0};     ///< d(theta)/dt [rad/s], up positive.

@@ -32,8 +32,8 @@ bool Authority::takeIfFree(Time now, std::int64_t session, const OperatorName& n
 }
 
 bool Authority::beyondDeadBand(const TeleopRates& r) const noexcept {
-  return std::max({std::abs(r.length), std::abs(r.elevation), std::abs(r.azimuth),
-                   std::abs(r.yaw), std::abs(r.gimbal_pitch)}) > config_.stick_dead_band;
+  return std::max({std::abs(r.length), std::abs(r.elevation), std::abs(r.azimuth), std::abs(r.yaw),
+                   std::abs(r.gimbal_pitch)}) > config_.stick_dead_band;
 }
 
 void Authority::update(Time now, Mode mode, const std::optional<Heartbeat>& heartbeat,
@@ -50,8 +50,7 @@ void Authority::update(Time now, Mode mode, const std::optional<Heartbeat>& hear
   if (!lease_.held()) return;
   const bool expired = silentFor(now, config_.lease_timeout_s);
   if (mode == Mode::kTeleop && silentFor(now, config_.teleop_heartbeat_timeout_s)) lost_ = true;
-  if (mode == Mode::kAuto && expired &&
-      config_.auto_without_operator == WithoutOperator::kHold)
+  if (mode == Mode::kAuto && expired && config_.auto_without_operator == WithoutOperator::kHold)
     lost_ = true;
   if (expired) end(LeaseEvent::kExpired);
 }
@@ -59,8 +58,8 @@ void Authority::update(Time now, Mode mode, const std::optional<Heartbeat>& hear
 AckResult Authority::decide(Time now, const OperatorCommand& c) noexcept {
   const bool is_request = c.request > Request::kNone && c.request <= Request::kEstop;
   const bool is_service = c.service > Service::kNone && c.service <= Service::kClearFaults;
-  if (is_request == is_service || (is_request ? c.service != Service::kNone
-                                              : c.request != Request::kNone))
+  if (is_request == is_service ||
+      (is_request ? c.service != Service::kNone : c.request != Request::kNone))
     return AckResult::kUnknown;
 
   if (c.service == Service::kForceLease && lease_.held() && lease_.session != c.session) {
@@ -73,6 +72,7 @@ AckResult Authority::decide(Time now, const OperatorCommand& c) noexcept {
     return AckResult::kAccepted;
   }
   if (is_request && isSafeDirection(c.request)) {
+    lost_ = false;  // somebody is there, whoever it is
     if (lease_.session == c.session) live(now);
     return AckResult::kAccepted;
   }

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// `tautline status|arm|disarm|takeoff|navigate|hold|land|stop`: the flight from the command line.
-/// Each verb blocks until what it asked for is done, refused or out of time.
+/// The operator's verbs that talk to a station: status, lease, flight, mission, sticks, parameters,
+/// faults. Each blocks until what it asked for is done, refused or out of time (app/cli/flight).
 
 #include <CLI/App.hpp>
 

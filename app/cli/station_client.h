@@ -12,27 +12,34 @@
 #include <utility>
 
 #include <lcm/lcm-cpp.hpp>
+#include <tautline/authority_t.hpp>
 #include <tautline/command_ack_t.hpp>
 #include <tautline/estimate_t.hpp>
 #include <tautline/event_t.hpp>
+#include <tautline/faults_t.hpp>
 #include <tautline/mission_chunk_t.hpp>
 #include <tautline/mission_status_t.hpp>
-#include <tautline/operator_command_t.hpp>
+#include <tautline/params_t.hpp>
+#include <tautline/safety_t.hpp>
 #include <tautline/station_state_t.hpp>
 #include <tautline/tether_state_t.hpp>
 #include <tautline/vehicle_state_t.hpp>
 
-#include "supervision/operator_command.h"
+#include "app/cli/operator_identity.h"
 #include "common/mission_plan.h"
 #include "common/time.h"
+#include "supervision/operator_command.h"
 
 namespace tautline::cli {
+
+/// Whether the client only listens or is an operator, who sends heartbeats while it waits.
+enum class Role : std::uint8_t { kListener, kOperator };
 
 class StationClient {
  public:
   /// @throws InputError (exit code kTimeout) if LCM cannot work on this machine, with the command
   /// that mends it.
-  explicit StationClient(const std::string& lcm_url);
+  StationClient(const std::string& lcm_url, Role role);
 
   /// Last message of each kind, if any came.
   struct View {
@@ -41,19 +48,31 @@ class StationClient {
     std::optional<tautline::estimate_t> estimate;
     std::optional<tautline::tether_state_t> tether;
     std::optional<tautline::vehicle_state_t> vehicle;
+    std::optional<tautline::authority_t> authority;
+    std::optional<tautline::safety_t> safety;
+    std::optional<tautline::faults_t> faults;
+    std::optional<tautline::params_t> params;  ///< Of the station; every 10 s.
   };
   [[nodiscard]] const View& view() const noexcept { return view_; }
 
   /// Handles messages until `done()` or the time is over; returns whether it is done.
   bool waitUntil(const std::function<bool()>& done, std::chrono::milliseconds timeout);
 
-  /// Sends one command, again every 200 ms until acknowledged; nullopt: no answer in time.
-  std::optional<tautline::command_ack_t> request(
-      Request request, std::uint64_t mission_hash = 0,
-      std::chrono::milliseconds timeout = std::chrono::seconds(3));
+  /// Sends one command, again every 200 ms until acknowledged; nullopt: no answer in time. Session,
+  /// sequence and name are filled in.
+  std::optional<tautline::command_ack_t> send(
+      OperatorCommand command, std::chrono::milliseconds timeout = std::chrono::seconds(3));
 
   /// Sends all of a mission; nullopt: no answer in time. A result other than kAccepted: refused.
   std::optional<tautline::command_ack_t> upload(const MissionPlan& plan);
+
+  /// One stick command; not acknowledged.
+  void sendSticks(bool dead_man, const TeleopRates& rates);
+
+  /// The session of this operator, 0 for a listener.
+  [[nodiscard]] std::int64_t session() const noexcept {
+    return identity_ ? identity_->session() : 0;
+  }
 
   /// No state message for three seconds, after there had been some: the station, or the way to it,
   /// is gone.
@@ -69,28 +88,21 @@ class StationClient {
   std::optional<tautline::command_ack_t> sendUntilAcknowledged(const char* channel,
                                                                Message& message,
                                                                std::chrono::milliseconds timeout);
+  void beat();
+  void beatIfDue();
 
   void onState(const lcm::ReceiveBuffer*, const std::string&, const tautline::station_state_t* m);
-  void onMission(const lcm::ReceiveBuffer*, const std::string&,
-                 const tautline::mission_status_t* m) {
-    view_.mission = *m;
+  template <class Message, std::optional<Message> View::*last>
+  void keep(const lcm::ReceiveBuffer*, const std::string&, const Message* m) {
+    view_.*last = *m;
   }
-  void onEstimate(const lcm::ReceiveBuffer*, const std::string&, const tautline::estimate_t* m) {
-    view_.estimate = *m;
-  }
-  void onTether(const lcm::ReceiveBuffer*, const std::string&, const tautline::tether_state_t* m) {
-    view_.tether = *m;
-  }
-  void onVehicle(const lcm::ReceiveBuffer*, const std::string&,
-                 const tautline::vehicle_state_t* m) {
-    view_.vehicle = *m;
-  }
+  void onParams(const lcm::ReceiveBuffer*, const std::string&, const tautline::params_t* m);
   void onAck(const lcm::ReceiveBuffer*, const std::string&, const tautline::command_ack_t* m);
   void onEventMessage(const lcm::ReceiveBuffer*, const std::string&, const tautline::event_t* m);
 
   lcm::LCM lcm_;
-  std::int64_t session_;
-  std::int32_t sequence_{0};
+  std::optional<OperatorIdentity> identity_;  ///< Of an operator.
+  Time next_beat_{};
   View view_;
   Time last_state_{};
   std::optional<tautline::command_ack_t> ack_;

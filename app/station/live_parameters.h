@@ -55,6 +55,16 @@ inline constexpr std::array kLiveSections{
     std::string_view{"executor"},   std::string_view{"limits"},
     std::string_view{"gate"},       std::string_view{"reel_dead_zone"}};
 
+/// Whether the number with this dotted key can be changed while the station runs.
+[[nodiscard]] constexpr bool isLive(std::string_view key) noexcept {
+  constexpr std::string_view kCore = "core.";
+  if (key.substr(0, kCore.size()) != kCore) return false;
+  key.remove_prefix(kCore.size());
+  const std::size_t dot = key.find('.');
+  return dot == std::string_view::npos || std::find(kLiveSections.begin(), kLiveSections.end(),
+                                                    key.substr(0, dot)) != kLiveSections.end();
+}
+
 /// Visitor of common/fields.h over the core's configuration that sets one number. Real-time safe:
 /// no allocation, no locks, no exceptions.
 class ParameterSetter {
@@ -78,18 +88,13 @@ class ParameterSetter {
   void field(const char* /*key*/, T& /*target*/, const char* /*doc*/) noexcept {}
   template <class Enum, class Names>
   void choice(const char* /*key*/, Enum& /*target*/, const Names&, const char* /*doc*/) noexcept {}
-  template <class List>
-  void rows(const char* /*key*/, List& /*target*/, const char* /*doc*/) noexcept {}
+  template <class Rows>
+  void rows(const char* /*key*/, Rows& /*rows*/, const char* /*doc*/) noexcept {}
   template <class Struct>
   void section(const char* key, Struct& inner) noexcept {
-    const bool top = depth_ == 0;
-    if (top && std::find(kLiveSections.begin(), kLiveSections.end(), key) == kLiveSections.end())
-      return;
     const ParameterKey before = key_;
     key_.append(key);
-    ++depth_;
     inner.fields(*this);
-    --depth_;
     key_ = before;
   }
 
@@ -100,7 +105,7 @@ class ParameterSetter {
   [[nodiscard]] bool found(const char* key) noexcept {
     ParameterKey whole = key_;
     whole.append(key);
-    if (parameterHash(whole.view()) != hash_) return false;
+    if (parameterHash(whole.view()) != hash_ || !isLive(whole.view())) return false;
     found_ = whole;
     return true;
   }
@@ -114,7 +119,6 @@ class ParameterSetter {
   double value_;
   ParameterKey key_;
   ParameterKey found_;
-  int depth_{0};
   std::optional<ParameterChange> change_;
 };
 

@@ -99,7 +99,8 @@ function(tautline_script_test name script)
   endif()
   add_test(NAME ${name} COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${ARGN})
   set_tests_properties(${name} PROPERTIES LABELS fast TIMEOUT 300
-    SKIP_RETURN_CODE 77 ENVIRONMENT "TAUTLINE_BIN=$<TARGET_FILE_DIR:tautline>;TAUTLINE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
+    SKIP_RETURN_CODE 77 ENVIRONMENT
+    "TAUTLINE_BIN=$<TARGET_FILE_DIR:tautline>;TAUTLINE_TEST_BIN=${CMAKE_BINARY_DIR}/test;TAUTLINE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
 endfunction()
 
 # tautline_benchmark(name [OWN_MAIN] SOURCES … LINK …): a Google Benchmark program in build/<preset>/benchmark, or with

@@ -8,8 +8,11 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <tautline/heartbeat_t.hpp>
 #include <tautline/operator_command_t.hpp>
 
+#include "app/station/input_message.h"
+#include "common/clock.h"
 #include "common/multicast.h"
 #include "common/testing/malloc_guard.h"
 #include "lcmtypes/channels.h"
@@ -29,18 +32,35 @@ class LcmLinkTest : public ::testing::Test {
     ASSERT_TRUE(client_->good());
   }
 
-  /// Sends commands until one arrives: a datagram may be lost, and the link's reader thread needs a
-  /// moment.
-  std::optional<OperatorCommand> exchange(const tautline::operator_command_t& command) {
+  /// Sends heartbeat and command until the command arrives: a datagram may be lost, and the link's
+  /// reader thread needs a moment.
+  std::optional<OperatorCommand> exchange(tautline::operator_command_t command) {
     for (int i = 0; i < 200; ++i) {
-      client_->publish(channel::kOperatorCommand, &command);
+      sendFresh(command);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      link_->poll();
-      if (link_->command()) return link_->command();
+      if (const StepInput in = poll(); in.command) return in.command;
     }
     return std::nullopt;
   }
+  void sendFresh(tautline::operator_command_t& command) {
+    tautline::heartbeat_t beat{};
+    command.utime = beat.utime = toMicroseconds(monotonicNow());
+    beat.session = command.session;
+    command.sequence = beat.sequence = ++sequence_;
+    client_->publish(channel::kHeartbeat, &beat);
+    client_->publish(channel::kOperatorCommand, &command);
+  }
+  StepInput poll() {
+    StepInput in;
+    link_->poll(monotonicNow(), -77);
+    link_->inbox().fill(in);
+    return in;
+  }
+  std::int64_t refused(AckResult result) const {
+    return link_->inbox().counts()[static_cast<std::size_t>(result)];
+  }
 
+  std::int64_t sequence_{0};
   std::unique_ptr<LcmLink> link_;
   std::unique_ptr<lcm::LCM> client_;
 };
@@ -48,44 +68,60 @@ class LcmLinkTest : public ::testing::Test {
 TEST_F(LcmLinkTest, DeliversACommandAsItWasSent) {
   tautline::operator_command_t command{};
   command.session = -77;
-  command.sequence = 5;
   command.verb = static_cast<std::int8_t>(Request::kNavigate);
   command.mission_hash = 0x7fedcba987654321;
+  put(command.name, operatorName("anna@bench"));
   const auto got = exchange(command);
   ASSERT_TRUE(got);
   EXPECT_EQ(got->session, -77);
-  EXPECT_EQ(got->sequence, 5);
+  EXPECT_LE(got->sequence, sequence_);
   EXPECT_EQ(got->request, Request::kNavigate);
   EXPECT_EQ(got->mission_hash, 0x7fedcba987654321U);
+  EXPECT_STREQ(got->name.data(), "anna@bench");
 }
 
-TEST_F(LcmLinkTest, ShortAndForeignBytesAreIgnored) {
-  const std::array<std::uint8_t, 40> junk{1, 2, 3};
-  for (unsigned size : {0U, 3U, 8U, 39U})
-    client_->publish(channel::kOperatorCommand, junk.data(), size);
-  for (unsigned size : {0U, 3U, 8U, 39U})
-    client_->publish(channel::kMissionChunk, junk.data(), size);
+TEST_F(LcmLinkTest, ShortForeignAndLongBytesAreCountedAndNothingElse) {
+  const std::array<std::uint8_t, 400> junk{1, 2, 3};
+  const char* const channels[] = {channel::kOperatorCommand, channel::kMissionChunk,
+                                  channel::kHeartbeat, channel::kTeleop};
+  for (const char* name : channels)
+    for (const unsigned size : {0U, 3U, 8U, 39U, 400U}) client_->publish(name, junk.data(), size);
   for (int i = 0; i < 40; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    link_->poll();
-    EXPECT_FALSE(link_->command());
-    EXPECT_EQ(link_->chunk(), nullptr);
+    const StepInput in = poll();
+    EXPECT_FALSE(in.command || in.heartbeat || in.sticks || in.turned_away);
+    EXPECT_EQ(in.chunk, nullptr);
   }
+  EXPECT_GT(refused(AckResult::kMalformed), 0);
+}
+
+TEST_F(LcmLinkTest, OfManyInACycleTheEmergencyStopIsTaken) {
+  tautline::operator_command_t command{};
+  command.session = -77;
+  ASSERT_TRUE(exchange(command));
+  for (const Request request : {Request::kArm, Request::kHold, Request::kEstop, Request::kLand}) {
+    command.verb = static_cast<std::int8_t>(request);
+    sendFresh(command);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const StepInput in = poll();
+  ASSERT_TRUE(in.command);
+  EXPECT_EQ(in.command->request, Request::kEstop);
 }
 
 TEST_F(LcmLinkTest, SendsAndReceivesWithoutTheHeap) {
   if (!testing::MallocGuard::available())
     GTEST_SKIP() << "SKIPPED: the heap cannot be watched under a sanitizer";
   tautline::operator_command_t command{};
-  command.sequence = 1;
+  command.session = -77;
   ASSERT_TRUE(exchange(command));  // LCM makes its table of channels with the first message of each
   std::array<std::uint8_t, 300> bytes{};
   ASSERT_TRUE(link_->publish(channel::kEstimate, 0, bytes));
   for (int i = 0; i < 500; ++i) {
-    client_->publish(channel::kOperatorCommand, &command);
+    sendFresh(command);
     const testing::MallocGuard guard;
     link_->publish(channel::kEstimate, 0, bytes);
-    link_->poll();
+    link_->poll(monotonicNow(), -77);
     ASSERT_EQ(guard.allocations(), 0) << "cycle " << i;
   }
 }

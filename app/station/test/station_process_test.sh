@@ -77,7 +77,7 @@ rm "$work/device"
 
 # The device comes, is flown, goes, comes back.
 start_sim
-check "the link comes up by itself" soon 8 '"conditions":""'
+check "the link comes up by itself" soon 8 '"arming_blockers":""'
 check "arm" tautline arm --quiet
 check "take-off" tautline takeoff --quiet
 kill -KILL "$sim"
@@ -86,7 +86,7 @@ check "an unplugged device is noticed" soon 4 '"mode":"LAND".*|LINK_VEHICLE'
 check "the station still runs" kill -0 "$station"
 start_sim
 check "a device on the ground ends the landing" soon 12 '"mode":"STANDBY"'
-check "the link is back" soon 8 '"conditions":""'
+check "the link is back, its loss needs a look" soon 8 '"arming_blockers":"FAULT_LATCHED"'
 
 # Stop is latched; disarm clears it.
 check "estop" tautline estop --quiet

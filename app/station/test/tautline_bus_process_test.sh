@@ -57,7 +57,7 @@ if command -v lcm-logger >/dev/null; then
 fi
 start_sim --device tautline-serial
 start_station "$work/station.toml" --device "$work/device"
-check "the bus comes up in order" soon 10 '"conditions":"".*"link_fault":"none"'
+check "the bus comes up in order" soon 10 '"arming_blockers":"".*"link_fault":"none"'
 flight=ok
 for step in arm takeoff "navigate $config/missions/square.mission.toml" land; do
   # shellcheck disable=SC2086
@@ -90,7 +90,7 @@ check "sensors at 20 Hz are recognised" soon 15 '"link_fault":"sensor rate"'
 check "the station still runs" kill -0 "$station"
 end "$sim"
 start_sim --device tautline-serial
-check "the right device ends it" soon 15 '"conditions":"".*"link_fault":"none"'
+check "the right device ends it" soon 15 '"arming_blockers":"".*"link_fault":"none"'
 end "$sim"
 end "$station"
 
