@@ -33,7 +33,7 @@ struct CampaignRow {
   Duration reaction_in{}; ///< ... within this time.
   std::vector<Condition> notice;  ///< In flight: any of these is raised ...
   Duration notice_in{};           ///< ... within this time.
-  std::string gap;                ///< What the station does not do yet; empty: nothing.
+  std::string gap;  ///< What the station is known not to do: failures are no news.
 };
 
 struct Campaign {

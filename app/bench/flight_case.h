@@ -104,6 +104,7 @@ struct FlightCase {
   std::vector<FaultPlan> faults;
   std::vector<Expectation> expectations;
   CaseLimits limits;
+  std::string gap;  ///< Why it is known to fail; empty: it is to pass.
 };
 
 /// Reading of names. All throw InputError that lists what there is.
