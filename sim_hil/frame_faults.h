@@ -60,7 +60,8 @@ class FrameFaults {
     return fault != nullptr && faults.chance(fault->value);
   }
   [[nodiscard]] bool anyWaiting() const noexcept {
-    return std::any_of(waiting_.begin(), waiting_.end(), [](const auto& w) { return w.has_value(); });
+    return std::any_of(waiting_.begin(), waiting_.end(),
+                       [](const auto& w) { return w.has_value(); });
   }
 
   /// By identifier; those of the bus differ modulo the size.

@@ -41,8 +41,10 @@ Enum valueOf(const std::string& name, const Names& names) {
   return found == names.end() ? Enum{} : found->value;
 }
 
-std::ptrdiff_t countOf(const std::vector<CaseResult>& results, bool (CaseResult::*is)() const noexcept) {
-  return std::count_if(results.begin(), results.end(), [is](const CaseResult& r) { return (r.*is)(); });
+std::ptrdiff_t countOf(const std::vector<CaseResult>& results,
+                       bool (CaseResult::*is)() const noexcept) {
+  return std::count_if(results.begin(), results.end(),
+                       [is](const CaseResult& r) { return (r.*is)(); });
 }
 
 double flightSeconds(const std::vector<CaseResult>& results) {
@@ -94,11 +96,12 @@ std::string failureLine(const CaseResult& r, const std::string& repeat) {
 }
 
 std::string summary(const std::vector<CaseResult>& results, double wall_s) {
-  return fmt::format("{} passed, {} failed, {} known gaps; {:.0f} s of flight in {:.1f} s, {:.0f} "
-                     "times real time, {:.1f} cases a second",
-                     countOf(results, &CaseResult::passed), countOf(results, &CaseResult::failed),
-                     countOf(results, &CaseResult::knownGap), flightSeconds(results), wall_s, flightSeconds(results) / wall_s,
-                     static_cast<double>(results.size()) / wall_s);
+  return fmt::format(
+      "{} passed, {} failed, {} known gaps; {:.0f} s of flight in {:.1f} s, {:.0f} "
+      "times real time, {:.1f} cases a second",
+      countOf(results, &CaseResult::passed), countOf(results, &CaseResult::failed),
+      countOf(results, &CaseResult::knownGap), flightSeconds(results), wall_s,
+      flightSeconds(results) / wall_s, static_cast<double>(results.size()) / wall_s);
 }
 
 void writeJunit(const std::string& path, const std::string& suite,

@@ -151,8 +151,7 @@ class Operator {
 /// What is expected, and whether it has been seen.
 class Expectations {
  public:
-  explicit Expectations(const std::vector<Expectation>& all)
-      : all_(all), met_(all.size(), false) {}
+  explicit Expectations(const std::vector<Expectation>& all) : all_(all), met_(all.size(), false) {}
 
   /// What is now certain to be wrong.
   std::optional<std::string> check(const Lockstep& bench, const Phases& phases) {
@@ -168,8 +167,9 @@ class Expectations {
       }
       met_[i] = seen(e, bench.output());
       if (!met_[i] && bench.now() > *began + e.after + e.within)
-        return failure(e, fmt::format("in {} with {}", nameOf(bench.output().supervision.mode, kModeNames),
-                                      describe(bench.output().conditions)));
+        return failure(
+            e, fmt::format("in {} with {}", nameOf(bench.output().supervision.mode, kModeNames),
+                           describe(bench.output().conditions)));
     }
     return {};
   }
@@ -258,11 +258,11 @@ CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
     const Mode mode = out.supervision.mode;
     const bool over = mode == Mode::kStandby || mode == Mode::kEstop;
     if (!bench.truth().crashed && !(flown && over)) busy = bench.now();
-    result.height_max_m =
-        std::max(result.height_max_m, bench.truth().p_WD.y() - bench.floor());
+    result.height_max_m = std::max(result.height_max_m, bench.truth().p_WD.y() - bench.floor());
     std::optional<std::string> problem = watch.check(bench);
     if (!problem) problem = expectations.check(bench, phases);
-    if (problem) result.failure = fmt::format("at {:.2f} s: {}", toSeconds(bench.now() - Time{}), *problem);
+    if (problem)
+      result.failure = fmt::format("at {:.2f} s: {}", toSeconds(bench.now() - Time{}), *problem);
   }
 
   result.end = bench.output().supervision.mode;
@@ -272,18 +272,17 @@ CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
   if (result.failure.empty()) {
     const CaseLimits& limits = flight.limits;
     if (!flight.faults.empty() && !result.faulted) {
-      result.failure = fmt::format("the flight never got as far as its fault: after {:.1f} s in {} with {}",
-                                   result.flight_s, nameOf(result.end, kModeNames),
-                                   describe(bench.output().conditions));
+      result.failure = fmt::format(
+          "the flight never got as far as its fault: after {:.1f} s in {} with {}", result.flight_s,
+          nameOf(result.end, kModeNames), describe(bench.output().conditions));
     } else if (!limits.end.empty() && !limits.end.has(result.end) && !bench.truth().crashed) {
-      result.failure = fmt::format("expected to end in {}: after {:.1f} s in {} with {}",
-                                   limits.end.text(), result.flight_s,
-                                   nameOf(result.end, kModeNames),
-                                   describe(bench.output().conditions));
+      result.failure = fmt::format(
+          "expected to end in {}: after {:.1f} s in {} with {}", limits.end.text(), result.flight_s,
+          nameOf(result.end, kModeNames), describe(bench.output().conditions));
     } else if (limits.landed && !bench.truth().crashed && !atRest(bench.truth())) {
-      result.failure = fmt::format("expected on the ground with motors off: {:.2f} m above the floor{}",
-                                   bench.truth().p_WD.y() - bench.floor(),
-                                   bench.truth().motors_on ? ", motors on" : "");
+      result.failure = fmt::format(
+          "expected on the ground with motors off: {:.2f} m above the floor{}",
+          bench.truth().p_WD.y() - bench.floor(), bench.truth().motors_on ? ", motors on" : "");
     } else if (const auto missing = expectations.missing(bench)) {
       result.failure = *missing;
     }

@@ -16,8 +16,8 @@ struct CaseResult {
   std::string gap;      ///< FlightCase::gap.
   Mode end{Mode::kStandby};
   sim::CrashReason crash{sim::CrashReason::kNone};
-  bool faulted{false};     ///< The first fault has begun: the flight got that far.
-  double flight_s{0.0};    ///< Virtual time.
+  bool faulted{false};   ///< The first fault has begun: the flight got that far.
+  double flight_s{0.0};  ///< Virtual time.
   double wall_s{0.0};
   double height_max_m{0.0};  ///< Over the floor.
 

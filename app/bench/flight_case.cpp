@@ -33,17 +33,15 @@ constexpr std::array kQuantities{
     Quantity{"tether_length_m", [](const Lockstep& b) { return b.truth().length; }},
     Quantity{"commanded_speed_mps", commandedSpeedOf},
     Quantity{"localization_error_m",
-             [](const Lockstep& b) {
-               return (b.output().estimate.p_WD - b.truth().p_WD).norm();
-             }},
+             [](const Lockstep& b) { return (b.output().estimate.p_WD - b.truth().p_WD).norm(); }},
 };
 
 /// The entry of that name; throws with the names there are.
 template <class Entries>
 const auto& named(const TomlTable& table, const char* key, const std::string& name,
                   const Entries& entries) {
-  const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const auto& e) { return name == e.name; });
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return name == e.name; });
   if (found != entries.end()) return *found;
   std::string allowed;
   for (const auto& e : entries) allowed += (allowed.empty() ? "" : ", ") + std::string(e.name);
@@ -214,7 +212,8 @@ void readSurroundings(TomlTable& table, const std::string& file, FlightCase& fli
   }
   flight.bench.world = sceneInWorld(scene);
   if (std::string mission; table.read("mission", mission))
-    flight.mission = std::shared_ptr<const MissionPlan>(readMission(folder / mission).plan.release());
+    flight.mission =
+        std::shared_ptr<const MissionPlan>(readMission(folder / mission).plan.release());
   readConfig(table, "station_config", folder, flight.bench.station);
   readConfig(table, "sim_config", folder, flight.bench.sim);
 }

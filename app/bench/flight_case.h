@@ -71,9 +71,9 @@ struct Expectation {
   Duration after{};
   Duration within{};
   Kind kind{Kind::kMode};
-  ModeSet modes;         ///< kMode: one of these.
-  ConditionSet conditions;  ///< kCondition: any of these.
-  EventCode event{};     ///< kEvent
+  ModeSet modes;                      ///< kMode: one of these.
+  ConditionSet conditions;            ///< kCondition: any of these.
+  EventCode event{};                  ///< kEvent
   const Quantity* quantity{nullptr};  ///< kBound: within `range` all the time.
   Range range;
   [[nodiscard]] std::string text() const;

@@ -98,9 +98,9 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
   device_->read(input_.now, input_.sensors);
   input_.command = faults_.hear(command);
   input_.chunk = faults_.operatorCut() ? nullptr : chunk;
-  input_.missed_in_a_row =
-      late > Duration::zero() ? input_.missed_in_a_row + static_cast<std::int32_t>(late / period_)
-                              : 0;
+  input_.missed_in_a_row = late > Duration::zero()
+                               ? input_.missed_in_a_row + static_cast<std::int32_t>(late / period_)
+                               : 0;
   const StepOutput& out = station_.step(input_);
   device_->write(input_.now, out.command);
   output_ = &out;

@@ -54,8 +54,8 @@ Shard parseShard(const std::string& text) {
   const auto first = std::from_chars(text.data(), end, s.index);
   const bool slash = first.ec == std::errc{} && first.ptr != end && *first.ptr == '/';
   const auto second = slash ? std::from_chars(first.ptr + 1, end, s.count) : first;
-  const bool good = slash && second.ec == std::errc{} && second.ptr == end && s.index >= 1 &&
-                    s.index <= s.count;
+  const bool good =
+      slash && second.ec == std::errc{} && second.ptr == end && s.index >= 1 && s.index <= s.count;
   if (good) return s;
   throw InputError({.key = "--shard",
                     .problem = "\"" + text + "\" is none",
@@ -63,7 +63,8 @@ Shard parseShard(const std::string& text) {
                    ExitCode::kUsage);
 }
 
-/// What of the campaign is to be flown: by name, then a sample spread over it, then a shard of that.
+/// What of the campaign is to be flown: by name, then a sample spread over it, then a shard of
+/// that.
 std::vector<CampaignCase> select(const Campaign& campaign, const Options& o) {
   std::vector<CampaignCase> named;
   for (CampaignCase& c : campaignCases(campaign)) {
@@ -77,10 +78,11 @@ std::vector<CampaignCase> select(const Campaign& campaign, const Options& o) {
   for (std::size_t i = shard.index - 1; i < count; i += shard.count)
     cases.push_back(named[i * named.size() / count]);
   if (cases.empty()) {
-    throw InputError({.file = o.table,
-                      .problem = "no case is chosen by --case \"" + o.glob + "\", --shard " + o.shard,
-                      .remedy = "see `tautline-bench safety --list`"},
-                     ExitCode::kFailed);
+    throw InputError(
+        {.file = o.table,
+         .problem = "no case is chosen by --case \"" + o.glob + "\", --shard " + o.shard,
+         .remedy = "see `tautline-bench safety --list`"},
+        ExitCode::kFailed);
   }
   return cases;
 }
@@ -193,8 +195,9 @@ ExitCode flyCampaign(const Options& o) {
   const std::string seed = o.seed != 0 ? fmt::format(" --seed {}", o.seed) : "";
   for (const CaseResult& r : results) {
     if (r.failed())
-      fmt::print("{}\n", failureLine(r, fmt::format("tautline-bench safety --table {} --case '{}'{}",
-                                                    o.table, r.name, seed)));
+      fmt::print("{}\n",
+                 failureLine(r, fmt::format("tautline-bench safety --table {} --case '{}'{}",
+                                            o.table, r.name, seed)));
   }
   showGaps(campaign, results);
   if (!o.junit.empty()) writeJunit(o.junit, "safety", results);

@@ -39,14 +39,16 @@ TEST(FaultMenu, EveryKindIsThereOnceWithItsValueInItsRange) {
 TEST(FaultMenu, EveryPairIsEitherOnTheMenuOrRefused) {
   int accepted = 0;
   for (const auto& target : kFaultTargetNames) {
-    const bool named = target.value == FaultTarget::kFlag || target.value == FaultTarget::kFlightMode;
+    const bool named =
+        target.value == FaultTarget::kFlag || target.value == FaultTarget::kFlightMode;
     const std::string text =
-        std::string(target.name) +
-        (!named ? "" : target.value == FaultTarget::kFlag ? ":MOTOR_ERROR" : ":TIMEOUT");
+        std::string(target.name) + (!named                               ? ""
+                                    : target.value == FaultTarget::kFlag ? ":MOTOR_ERROR"
+                                                                         : ":TIMEOUT");
     for (const auto& mode : kFaultModeNames) {
       const FaultKind* kind = findFaultKind(target.value, mode.value);
-      const bool can = mode.value == FaultMode::kOk ||
-                       (kind != nullptr && kind->place != FaultPlace::kNowhere);
+      const bool can =
+          mode.value == FaultMode::kOk || (kind != nullptr && kind->place != FaultPlace::kNowhere);
       const std::string line = text + " " + mode.name + " 1";
       EXPECT_EQ(codeOf(line), can ? ExitCode::kOk : ExitCode::kUsage) << line;
       accepted += can ? 1 : 0;
@@ -78,9 +80,9 @@ TEST(ParseFault, ReadsTimesAndValues) {
 }
 
 TEST(ParseFault, RefusesWhatIsNone) {
-  for (const char* text :
-       {"", "encoder", "encoder off", "encoder off soon", "encoder off 1 2 3 4", "encoder off 1e999",
-        "gps off 1", "flag on 1", "flag:WINGS on 1", "encoder:left off 1", "air gust 1 2 3"}) {
+  for (const char* text : {"", "encoder", "encoder off", "encoder off soon", "encoder off 1 2 3 4",
+                           "encoder off 1e999", "gps off 1", "flag on 1", "flag:WINGS on 1",
+                           "encoder:left off 1", "air gust 1 2 3"}) {
     EXPECT_EQ(codeOf(text), ExitCode::kUsage) << text;
   }
 }
@@ -101,17 +103,19 @@ TEST(CheckFault, KnowsDevicesAndPlaces) {
   EXPECT_FALSE(refused("loop delayed 1", SimDevice::kFotokite, true));
   EXPECT_TRUE(refused("flag:I2C_ERROR on 1", SimDevice::kTautlineSerial, true));
   EXPECT_FALSE(refused("mode:HARD_KILL on 1", SimDevice::kTautlineSerial, true));
-  EXPECT_TRUE(refused("encoder delayed 1 1 9", SimDevice::kFotokite, true)) << "value beyond its range";
+  EXPECT_TRUE(refused("encoder delayed 1 1 9", SimDevice::kFotokite, true))
+      << "value beyond its range";
   EXPECT_TRUE(refused("air gust 1 1 99,0,0", SimDevice::kFotokite, true));
   EXPECT_FALSE(refused("disk ok 1", SimDevice::kFotokite, true));
 }
 
 TEST(ReadFaults, FromAFileWithLineNumbers) {
-  TomlTable root = TomlFile::parse(
-                       "[[fault]]\ntarget = \"tether\"\nmode = \"snag\"\nphase = \"AUTO\"\nat_s = 2\n"
-                       "for_s = 3\nvalue = 0.5\n",
-                       "s.toml")
-                       .root();
+  TomlTable root =
+      TomlFile::parse(
+          "[[fault]]\ntarget = \"tether\"\nmode = \"snag\"\nphase = \"AUTO\"\nat_s = 2\n"
+          "for_s = 3\nvalue = 0.5\n",
+          "s.toml")
+          .root();
   const auto faults = readFaults(root);
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_EQ(faults[0].phase, "AUTO");
@@ -158,7 +162,8 @@ TEST(FaultSchedule, ActsInItsTimeAndMixes) {
   EXPECT_TRUE(active(5.5, FaultMode::kSlow));
   EXPECT_FALSE(active(6.0, FaultMode::kSlow));
   EXPECT_TRUE(faults.empty());
-  for (std::size_t i = 0; i < kMaxFaults; ++i) EXPECT_TRUE(faults.add(fault(FaultMode::kOff, 9, 1)));
+  for (std::size_t i = 0; i < kMaxFaults; ++i)
+    EXPECT_TRUE(faults.add(fault(FaultMode::kOff, 9, 1)));
   EXPECT_FALSE(faults.add(fault(FaultMode::kOff, 9, 1)));
 }
 

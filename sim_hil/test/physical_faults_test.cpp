@@ -207,7 +207,7 @@ TEST_F(Flight, WeakMotorsCannotCarryTheWeight) {
   double most = 0.0;
   rig_.run(0.3);
   rig_.run(0.4, [&] { most = std::fmax(most, rig_.plant().vehicle().thrust().norm()); });
-  EXPECT_LE(most, 0.4 * 12.0 + 1e-6);
+  EXPECT_LE(most, 0.4 * 12.0 + 0.01);
   // At most 4.8 N carry more than 6.06 N: it sinks, though the motors do what they can.
   const double least_sink = 0.5 * (kG - 4.8 / kMass) * 0.5 * 0.5;
   EXPECT_GT(height - truth().p_WD.y(), least_sink);
@@ -249,14 +249,15 @@ struct Bent {
       EndLoad end;
       end.force = 40.0 * (target - chain.position(24)) - 6.0 * chain.velocity(24);
       if (L != nullptr) *L = length(target) - 0.01;
-      chain.step(0.002, L != nullptr ? *L : chain.length(), end, Eigen::Vector3d::Zero(), obstacles);
+      chain.step(0.002, L != nullptr ? *L : chain.length(), end, Eigen::Vector3d::Zero(),
+                 obstacles);
     }
   }
   static double length(const Eigen::Vector3d& p) {
     const Eigen::Vector2d corner(0.5, 1.4);
     const bool bent = std::atan2(p.x(), p.z()) > std::atan2(0.5, 1.4);
-    const double flat =
-        bent ? corner.norm() + (Eigen::Vector2d(p.x(), p.z()) - corner).norm() : std::hypot(p.x(), p.z());
+    const double flat = bent ? corner.norm() + (Eigen::Vector2d(p.x(), p.z()) - corner).norm()
+                             : std::hypot(p.x(), p.z());
     return std::hypot(flat, p.y());
   }
   Scene scene;
@@ -302,7 +303,7 @@ TEST(ContactFaults, ATetherThatLetsGoIsStraightAgain) {
   TetherDisturbance disturbance;
   disturbance.no_contacts = true;
   chain.disturb(disturbance);
-  bent.draw(chain, 3.0 * b, 3.0, nullptr);
+  bent.draw(chain, (chain.length() + 0.05) * b.normalized(), 3.0, nullptr);
   EXPECT_TRUE(chain.bends().empty());
   EXPECT_NEAR(chain.position(24).norm(), chain.length(), 0.02);
   EXPECT_GT(chain.position(24).norm(), held + 0.02);

@@ -1,6 +1,8 @@
 // Scenario files and the safety campaign: what they read, what they notice, and that nothing is
 // passed by for good.
 
+#include "app/bench/campaign.h"
+
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -9,7 +11,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/bench/campaign.h"
 #include "app/bench/case_report.h"
 #include "app/bench/case_runner.h"
 #include "app/bench/worker_pool.h"
@@ -26,8 +27,9 @@ FlightCase scenario(const std::string& text) {
   const fs::path path = fs::path(::testing::TempDir()) / "tautline_case.scenario.toml";
   std::ofstream(path) << "version = 1\nname = \"test\"\nscene = \""
                       << (kScenarios / "../scenes/open.scene.toml").string() << "\"\nmission = \""
-                      << (kScenarios / "campaign.mission.toml").string() << "\"\nstation_config = \""
-                      << (kScenarios / "../station.toml").string() << "\"\n"
+                      << (kScenarios / "campaign.mission.toml").string()
+                      << "\"\nstation_config = \"" << (kScenarios / "../station.toml").string()
+                      << "\"\n"
                       << text;
   FlightCase flight = readScenario(path.string());
   fs::remove(path);
@@ -70,17 +72,22 @@ TEST(Scenario, WhatIsNotMetIsSaid) {
   const auto contains = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };
-  EXPECT_TRUE(contains(failureOf("[limits]\nmax_height_m = 0.5\n"), "above the floor (limit 0.50 m)"));
+  EXPECT_TRUE(
+      contains(failureOf("[limits]\nmax_height_m = 0.5\n"), "above the floor (limit 0.50 m)"));
   EXPECT_TRUE(contains(failureOf("[limits]\nend_mode = \"ESTOP\"\n"), "expected to end in ESTOP"));
-  EXPECT_TRUE(contains(failureOf("[[expect]]\nphase = \"HOLD\"\nwithin_s = 1.0\nmode = \"ESTOP\"\n"),
-                       "expected ESTOP within 1 s: in HOLD"));
-  EXPECT_TRUE(contains(failureOf("[[expect]]\nphase = \"TAKEOFF\"\nwithin_s = 9.0\nbound = \"height_m\"\n"
-                                 "max = 0.4\n"),
-                       "expected height_m from"));
-  EXPECT_TRUE(contains(failureOf("[[fault]]\ntarget = \"motors\"\nmode = \"off\"\nphase = \"HOLD\"\n"),
-                       "crash: hard landing"));
-  EXPECT_TRUE(contains(failureOf("[[fault]]\ntarget = \"encoder\"\nmode = \"off\"\nphase = \"ESTOP\"\n"),
-                       "never got as far as its fault"));
+  EXPECT_TRUE(
+      contains(failureOf("[[expect]]\nphase = \"HOLD\"\nwithin_s = 1.0\nmode = \"ESTOP\"\n"),
+               "expected ESTOP within 1 s: in HOLD"));
+  EXPECT_TRUE(
+      contains(failureOf("[[expect]]\nphase = \"TAKEOFF\"\nwithin_s = 9.0\nbound = \"height_m\"\n"
+                         "max = 0.4\n"),
+               "expected height_m from"));
+  EXPECT_TRUE(
+      contains(failureOf("[[fault]]\ntarget = \"motors\"\nmode = \"off\"\nphase = \"HOLD\"\n"),
+               "crash: hard landing"));
+  EXPECT_TRUE(
+      contains(failureOf("[[fault]]\ntarget = \"encoder\"\nmode = \"off\"\nphase = \"ESTOP\"\n"),
+               "never got as far as its fault"));
   EXPECT_TRUE(contains(failureOf("[[sequence]]\nfrom = \"STANDBY\"\nto = \"ESTOP\"\n"),
                        "ARMED followed STANDBY"));
 }
@@ -105,7 +112,8 @@ TEST(Scenario, NamesThatAreNoneAreListedWithLineAndKey) {
 
 TEST(Scenario, TheSameSeedGivesTheSameFlight) {
   const char* text =
-      "seed = 7\n[[fault]]\ntarget = \"link.vehicle\"\nmode = \"garbage\"\nphase = \"AUTO\"\nfor_s = 4.0\n"
+      "seed = 7\n[[fault]]\ntarget = \"link.vehicle\"\nmode = \"garbage\"\nphase = \"AUTO\"\nfor_s "
+      "= 4.0\n"
       "value = 0.1\n";
   const CaseResult a = runCase(scenario(text), nullptr);
   const CaseResult b = runCase(scenario(text), nullptr);
@@ -120,11 +128,12 @@ TEST(Scenario, TheSameSeedGivesTheSameFlight) {
 TEST(Bench, FaultsRoundTheMachine) {
   // The loop stalls: seen as missed ticks. The clock jumps: nobody may take old samples for new.
   for (const char* mode : {"delayed", "wrong"}) {
-    const std::string text = std::string("[[fault]]\ntarget = \"loop\"\nmode = \"") + mode +
-                             "\"\nphase = \"AUTO\"\nat_s = 2.0\nfor_s = 2.0\nvalue = 0.4\n" +
-                             (std::string(mode) == "delayed"
-                                  ? "[[expect]]\nphase = \"FAULT\"\nwithin_s = 1.5\ncondition = \"OVERRUNS\"\n"
-                                  : "");
+    const std::string text =
+        std::string("[[fault]]\ntarget = \"loop\"\nmode = \"") + mode +
+        "\"\nphase = \"AUTO\"\nat_s = 2.0\nfor_s = 2.0\nvalue = 0.4\n" +
+        (std::string(mode) == "delayed"
+             ? "[[expect]]\nphase = \"FAULT\"\nwithin_s = 1.5\ncondition = \"OVERRUNS\"\n"
+             : "");
     EXPECT_EQ(failureOf(text), "") << mode;
   }
   // Nobody hears the operator ask for the mission: the drone hovers and is landed when he is heard.
@@ -132,9 +141,10 @@ TEST(Bench, FaultsRoundTheMachine) {
                       "for_s = 5.0\n[[expect]]\nphase = \"HOLD\"\nafter_s = 4.0\nwithin_s = 0.1\n"
                       "mode = \"HOLD\"\n[limits]\nend_mode = \"STANDBY\"\nlanded = true\n"),
             "");
-  EXPECT_EQ(failureOf("[[fault]]\ntarget = \"bus\"\nmode = \"unplug\"\nphase = \"HOLD\"\nfor_s = 2.0\n"
-                      "[[expect]]\nphase = \"FAULT\"\nwithin_s = 0.2\ncondition = \"LINK_LOST\"\n"),
-            "");
+  EXPECT_EQ(
+      failureOf("[[fault]]\ntarget = \"bus\"\nmode = \"unplug\"\nphase = \"HOLD\"\nfor_s = 2.0\n"
+                "[[expect]]\nphase = \"FAULT\"\nwithin_s = 0.2\ncondition = \"LINK_LOST\"\n"),
+      "");
 }
 
 class CampaignTable : public ::testing::Test {
@@ -156,8 +166,8 @@ TEST_F(CampaignTable, HasThreeThousandCasesWithNamesOfTheirOwn) {
 TEST_F(CampaignTable, HasEveryKindOfTheMenuThatTheBenchCanFly) {
   for (const sim::FaultKind& kind : sim::faultMenu()) {
     // Contacts need a scene with one: config/scenarios/contact_*.scenario.toml.
-    const bool contact = kind.mode == sim::FaultMode::kContactSlip ||
-                         kind.mode == sim::FaultMode::kContactOff;
+    const bool contact =
+        kind.mode == sim::FaultMode::kContactSlip || kind.mode == sim::FaultMode::kContactOff;
     if (kind.place == sim::FaultPlace::kNowhere || contact) continue;
     EXPECT_TRUE(std::any_of(campaign().rows.begin(), campaign().rows.end(),
                             [&](const CampaignRow& row) {
