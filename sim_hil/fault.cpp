@@ -135,7 +135,8 @@ constexpr std::array kFlightModes{
 template <class Entries, class NameOf>
 std::string listOf(const Entries& entries, const NameOf& name_of) {
   std::string list;
-  for (const auto& entry : entries) list += (list.empty() ? "" : ", ") + std::string(name_of(entry));
+  for (const auto& entry : entries)
+    list += (list.empty() ? "" : ", ") + std::string(name_of(entry));
   return list;
 }
 
@@ -212,11 +213,10 @@ Fault makeFault(std::string_view target, std::string_view mode) {
     const auto found =
         find(colon < target.size() ? target.substr(colon + 1) : std::string_view{}, codes);
     if (found == codes.end()) {
-      throw InputError(
-          {.key = "target",
-           .problem = "\"" + std::string(target) + "\" is none",
-           .allowed = std::string(named->name) + ":NAME with NAME one of " +
-                      listOf(codes, [](const VehicleCode& c) { return c.name; })});
+      throw InputError({.key = "target",
+                        .problem = "\"" + std::string(target) + "\" is none",
+                        .allowed = std::string(named->name) + ":NAME with NAME one of " +
+                                   listOf(codes, [](const VehicleCode& c) { return c.name; })});
     }
     fault.code = static_cast<std::size_t>(found - codes.begin());
   } else if (colon < target.size()) {

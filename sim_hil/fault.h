@@ -26,10 +26,10 @@ enum class FaultTarget : std::uint8_t {
   kAttitude,
   kBattery,
   kReel,
-  kClock,         ///< The device's own.
-  kVehicleLink,   ///< Bytes, both ways.
-  kUplink,        ///< Bytes from the station only.
-  kBus,           ///< Messages of the Tautline bus.
+  kClock,        ///< The device's own.
+  kVehicleLink,  ///< Bytes, both ways.
+  kUplink,       ///< Bytes from the station only.
+  kBus,          ///< Messages of the Tautline bus.
   kTether,
   kMotors,
   kAir,
@@ -158,10 +158,10 @@ struct Fault {
 
   FaultTarget target{FaultTarget::kEncoder};
   FaultMode mode{FaultMode::kOk};
-  std::size_t code{0};           ///< Index in vehicleFlags() or vehicleFlightModes().
-  Time at{};                     ///< On the machine's virtual clock.
+  std::size_t code{0};  ///< Index in vehicleFlags() or vehicleFlightModes().
+  Time at{};            ///< On the machine's virtual clock.
   Duration lasting{kForEver};
-  double value{0.0};             ///< FaultKind::value.
+  double value{0.0};                                  ///< FaultKind::value.
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  ///< Of a gust, in W [m/s].
 };
 
@@ -169,8 +169,8 @@ struct Fault {
 /// Throws InputError for what is not on the menu or not supported anywhere.
 [[nodiscard]] Fault makeFault(std::string_view target, std::string_view mode);
 
-/// "TARGET MODE AT_S [FOR_S [VALUE]]", times in seconds; a gust's value is X,Y,Z. FOR_S 0: for ever.
-/// Throws InputError (usage).
+/// "TARGET MODE AT_S [FOR_S [VALUE]]", times in seconds; a gust's value is X,Y,Z. FOR_S 0: for
+/// ever. Throws InputError (usage).
 [[nodiscard]] Fault parseFault(const std::string& text);
 
 /// Throws InputError if the fault's value is out of its range, or if a machine with this device, or

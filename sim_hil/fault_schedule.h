@@ -90,7 +90,8 @@ class LooseContact {
     }
     if (faults.now() >= next_) {
       open_ = !open_;
-      next_ = faults.now() + fromSeconds(fault->value * (1.0 + 0.9 * faults.random().signedUniform()));
+      next_ =
+          faults.now() + fromSeconds(fault->value * (1.0 + 0.9 * faults.random().signedUniform()));
     }
     return open_;
   }

@@ -7,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <span>
 
 #include "sim_hil/fault_schedule.h"
 #include "sim_hil/tautline_frame.h"
@@ -19,14 +18,17 @@ class FrameFaults {
  public:
   /// What comes out when `frame` goes in: none while it waits for the next of its kind, two when it
   /// is doubled or has waited.
-  static constexpr std::size_t kMostFrames = 3;
-  struct Result {
-    std::array<TautlineFrame, kMostFrames> frames;
-    std::size_t count{0};
-    [[nodiscard]] std::span<const TautlineFrame> all() const noexcept {
-      return {frames.data(), count};
-    }
-    void put(const TautlineFrame& frame) noexcept { frames[count++] = frame; }
+  class Result {
+   public:
+    void put(const TautlineFrame& frame) noexcept { frames_[count_++] = frame; }
+    [[nodiscard]] bool empty() const noexcept { return taken_ == count_; }
+    /// The next one; only if not empty.
+    [[nodiscard]] const TautlineFrame& take() noexcept { return frames_[taken_++]; }
+
+   private:
+    std::array<TautlineFrame, 3> frames_;
+    std::size_t count_{0};
+    std::size_t taken_{0};
   };
 
   [[nodiscard]] Result pass(TautlineFrame frame, FaultSchedule& faults) noexcept {
@@ -58,7 +60,8 @@ class FrameFaults {
     return fault != nullptr && faults.chance(fault->value);
   }
   [[nodiscard]] bool anyWaiting() const noexcept {
-    return std::any_of(waiting_.begin(), waiting_.end(), [](const auto& w) { return w.has_value(); });
+    return std::any_of(waiting_.begin(), waiting_.end(),
+                       [](const auto& w) { return w.has_value(); });
   }
 
   /// By identifier; those of the bus differ modulo the size.

@@ -140,8 +140,7 @@ void showFaults() {
   }
   const auto list = [](const char* title, std::span<const VehicleCode> codes) {
     std::printf("%s", title);
-    for (const VehicleCode& c : codes)
-      std::printf(" %s%s", c.name, c.tautline < 0 ? "" : "*");
+    for (const VehicleCode& c : codes) std::printf(" %s%s", c.name, c.tautline < 0 ? "" : "*");
     std::printf("\n");
   };
   list("flag:NAME   ", vehicleFlags());

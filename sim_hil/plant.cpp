@@ -13,7 +13,7 @@ constexpr double kGravity = 9.81;
 constexpr int kStepsPerAirUpdate = 10;
 constexpr double kDefaultFoot = 0.1;   // [m]
 constexpr double kSameContact = 0.05;  // contacts nearer than this on one obstacle are one [m]
-constexpr double kReleased = 1.0;     // a tether that was held follows its reel again [m/s]
+constexpr double kReleased = 1.0;      // a tether that was held follows its reel again [m/s]
 constexpr double kOnGround = 0.02;     // attachment this near its parking height stands [m]
 
 /// Height of the attachment over the ground when parked, from the scene's start.
@@ -59,8 +59,8 @@ Plant::Plant(const SimConfig& config, Obstacles obstacles, const Eigen::Vector3d
       reel_(config.reel, tether_.length()),
       vehicle_(config.vehicle),
       wind_(config.wind),
-      sensors_(config.sensors, SensorInput{reel_.counts(), polarOf(p_start_),
-                                           Eigen::Quaterniond::Identity(), 0.0}),
+      sensors_(config.sensors,
+               SensorInput{reel_.counts(), polarOf(p_start_), Eigen::Quaterniond::Identity(), 0.0}),
       faults_(seed) {
   updateTruth();
 }

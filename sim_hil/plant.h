@@ -94,7 +94,8 @@ class Plant {
   FaultSchedule faults_;
   SensorFaults sensor_faults_;
   ReelFaults reel_faults_;
-  double behind_{0.0};  // tether that the drum has paid out and that is held back from the outlet [m]
+  double behind_{
+      0.0};  // tether that the drum has paid out and that is held back from the outlet [m]
   bool held_{false};
   bool cut_{false};
   Time clock_{};

@@ -40,7 +40,8 @@ void Reel::step(double h, double tension) noexcept {
 }
 
 std::int64_t Reel::counts() const noexcept {
-  return std::llround(std::floor((length_ + counted_ - config_.power_on_length) / metresPerCount()));
+  return std::llround(
+      std::floor((length_ + counted_ - config_.power_on_length) / metresPerCount()));
 }
 
 double Reel::metresPerCount() const noexcept { return config_.metres_per_count * config_.scale; }

@@ -69,8 +69,8 @@ class Reel {
   [[nodiscard]] double wanted() const noexcept { return locked_ ? 0.0 : commanded_; }
   /// It winds in against a tether that is held, with all its force.
   [[nodiscard]] bool stalled() const noexcept { return stalled_; }
-  [[nodiscard]] std::int64_t counts() const noexcept;               ///< Encoder.
-  [[nodiscard]] double metresPerCount() const noexcept;             ///< True.
+  [[nodiscard]] std::int64_t counts() const noexcept;    ///< Encoder.
+  [[nodiscard]] double metresPerCount() const noexcept;  ///< True.
   [[nodiscard]] double scale() const noexcept { return config_.scale; }
 
  private:

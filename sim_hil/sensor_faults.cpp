@@ -48,8 +48,8 @@ SensorReadings SensorFaults::apply(const SensorReadings& good, double metres_per
 
   r.attitude_silent = attitude_.pass(FaultTarget::kAttitude, r.attitude, faults);
   if (const Fault* f = faults.active(FaultTarget::kAttitude, FaultMode::kWrong))
-    r.attitude = Eigen::Quaterniond(Eigen::AngleAxisd(f->value, Eigen::Vector3d::UnitX())) *
-                 r.attitude;
+    r.attitude =
+        Eigen::Quaterniond(Eigen::AngleAxisd(f->value, Eigen::Vector3d::UnitX())) * r.attitude;
   if (faults.active(FaultTarget::kAttitude, FaultMode::kGarbage) != nullptr) {
     const Eigen::Vector3d v = random.normal3();
     r.attitude = Eigen::Quaterniond(random.normal(), v.x(), v.y(), v.z()).normalized();

@@ -65,11 +65,14 @@ class TautlineMachine final : public Machine {
   std::size_t transmit(std::span<std::uint8_t> out) noexcept override {
     std::size_t size = append(replies_, out, 0);
     replies_.size = 0;
-    constexpr std::size_t kRoom = FrameFaults::kMostFrames * sizeof(WireBytes::buffer);
-    TautlineFrame frame;
-    while (out.size() - size >= kRoom && devices_.transmit(frame)) {
-      for (const TautlineFrame& passed : frame_faults_.pass(frame, faults_).all())
-        size += append(encodeFrame(wire_, passed), out, size);
+    while (out.size() - size >= sizeof(WireBytes::buffer)) {
+      if (passed_.empty()) {
+        TautlineFrame frame;
+        if (!devices_.transmit(frame)) break;
+        passed_ = frame_faults_.pass(frame, faults_);
+        continue;
+      }
+      size += append(encodeFrame(wire_, passed_.take()), out, size);
     }
     return size;
   }
@@ -87,6 +90,7 @@ class TautlineMachine final : public Machine {
   TautlineEmulator devices_;
   FaultSchedule& faults_;
   FrameFaults frame_faults_;
+  FrameFaults::Result passed_;  // not yet taken
   WireBytes replies_;
 };
 

@@ -195,11 +195,11 @@ void TautlineEmulator::sendSensors() noexcept {
   const Vehicle& vehicle = plant_.vehicle();
   if (!s.encoder_silent)
     send(bus::kReelId, field(static_cast<double>(s.counts), 1.0, 0, 24, true) |
-                         field(plant_.reel().rate(), bus::kSpeedUnit, 24, 14, true) |
-                         field(plant_.truth().reel_tension, bus::kTensionUnit, 38, 14, false));
+                           field(plant_.reel().rate(), bus::kSpeedUnit, 24, 14, true) |
+                           field(plant_.truth().reel_tension, bus::kTensionUnit, 38, 14, false));
   if (!s.angles_silent)
     send(bus::kAnglesId, field(s.tangent.elevation, bus::kAngleUnit, 0, 16, true) |
-                           field(wrapped(s.tangent.azimuth), bus::kAngleUnit, 16, 16, true));
+                             field(wrapped(s.tangent.azimuth), bus::kAngleUnit, 16, 16, true));
   const Eigen::Quaterniond& q = s.attitude;
   std::uint64_t bits = 0;
   unsigned start = 0;

@@ -181,8 +181,7 @@ void TetherChain::prepare(double h, double L_rate, const EndLoad& end,
   // a viscous coefficient with the tension and the slip of the last step.
   for (int j = 0; j < n_; ++j) {
     const double limit =
-        bent_[at(j)] ? 2.0 * tension_[at(j)] * std::tanh(0.5 * friction() * way(j).turn)
-                     : 0.0;
+        bent_[at(j)] ? 2.0 * tension_[at(j)] * std::tanh(0.5 * friction() * way(j).turn) : 0.0;
     rub_[at(j)] = limit / std::fmax(std::abs(slip_[at(j)]), kCreep);
     if (!bent_[at(j)]) slip_[at(j)] = rubbing_[at(j)] = 0.0;
   }

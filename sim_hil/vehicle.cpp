@@ -148,8 +148,9 @@ Eigen::Vector3d Vehicle::wantedForce(const VehicleSense& sense) const noexcept {
   const Eigen::Vector3d v_target =
       sense.length_rate * d_target + lever(sense) * (setpoint_rate_.elevation * along_elevation +
                                                      setpoint_rate_.azimuth * ce * along_azimuth);
-  return Eigen::Vector3d(0.0, config_.mass * kGravity, 0.0) + disturbance_.tension.value_or(config_.tension) * d_target +
-         correction + 2.0 * config_.damping * w * config_.mass * (v_target - sense.v_WD);
+  return Eigen::Vector3d(0.0, config_.mass * kGravity, 0.0) +
+         disturbance_.tension.value_or(config_.tension) * d_target + correction +
+         2.0 * config_.damping * w * config_.mass * (v_target - sense.v_WD);
 }
 
 /// Tilt and thrust limits, then first-order lags of direction and magnitude.
@@ -162,7 +163,8 @@ void Vehicle::followForce(double h, const Eigen::Vector3d& force) noexcept {
     wanted.x() *= allowed / sideways;
     wanted.z() *= allowed / sideways;
   }
-  const double limit = std::fmax(config_.thrust_min, disturbance_.thrust_limit * config_.thrust_max);
+  const double limit =
+      std::fmax(config_.thrust_min, disturbance_.thrust_limit * config_.thrust_max);
   const double magnitude = std::clamp(wanted.norm(), config_.thrust_min, limit);
   const Eigen::Vector3d direction = wanted.normalized();
   up_ = (up_ + (1.0 - std::exp(-h / config_.attitude_lag)) * (direction - up_)).normalized();

@@ -187,12 +187,14 @@ FlightCase flightOf(const Campaign& campaign, const CampaignCase& c) {
     flight.faults.push_back(plan);
   };
   add(first, phase.at);
+  flight.gap = first.gap;
   if (!c.second) {
     addExpectations(first, phase.mode, flight);
     return flight;
   }
   const CampaignRow& second = campaign.rows[*c.second];
   add(second, phase.at + kPairDelay);
+  if (flight.gap.empty()) flight.gap = second.gap;
   flight.limits.may_crash = first.may_crash || second.may_crash;
   flight.limits.end = first.end | second.end;
   flight.limits.landed = first.landed && second.landed;

@@ -21,19 +21,19 @@ struct CampaignPhase {
 
 /// One row of the table: a fault and what is expected of a flight that has it.
 struct CampaignRow {
-  std::string label;  ///< Unique.
-  sim::Fault fault;   ///< `at` is not used.
+  std::string label;                 ///< Unique.
+  sim::Fault fault;                  ///< `at` is not used.
   std::vector<std::string> flights;  ///< Names; empty: all whose device can have it.
   ModeSet phases;                    ///< Empty: all.
   bool pairs{false};                 ///< Also together with the other rows that have this.
   bool may_crash{false};             ///< It may end so, and no station could prevent it.
   ModeSet end;
-  bool landed{true};      ///< Ends on the ground, motors off.
-  ModeSet reaction;       ///< From AUTO: into one of these ...
-  Duration reaction_in{}; ///< ... within this time.
+  bool landed{true};              ///< Ends on the ground, motors off.
+  ModeSet reaction;               ///< From AUTO: into one of these ...
+  Duration reaction_in{};         ///< ... within this time.
   std::vector<Condition> notice;  ///< In flight: any of these is raised ...
   Duration notice_in{};           ///< ... within this time.
-  std::string gap;                ///< What the station does not do yet; empty: nothing.
+  std::string gap;                ///< What the station is known not to do: failures are no news.
 };
 
 struct Campaign {

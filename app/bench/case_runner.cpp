@@ -235,6 +235,7 @@ CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
   const Time began = monotonicNow();
   CaseResult result;
   result.name = flight.name;
+  result.gap = flight.gap;
   result.seed = flight.bench.seed;
   Lockstep bench(flight.bench, sink);
   FlightWatch watch(flight.limits);
@@ -270,7 +271,11 @@ CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
   result.flight_s = toSeconds(bench.now() - Time{});
   if (result.failure.empty()) {
     const CaseLimits& limits = flight.limits;
-    if (!limits.end.empty() && !limits.end.has(result.end) && !bench.truth().crashed) {
+    if (!flight.faults.empty() && !result.faulted) {
+      result.failure = fmt::format(
+          "the flight never got as far as its fault: after {:.1f} s in {} with {}", result.flight_s,
+          nameOf(result.end, kModeNames), describe(bench.output().conditions));
+    } else if (!limits.end.empty() && !limits.end.has(result.end) && !bench.truth().crashed) {
       result.failure = fmt::format(
           "expected to end in {}: after {:.1f} s in {} with {}", limits.end.text(), result.flight_s,
           nameOf(result.end, kModeNames), describe(bench.output().conditions));

@@ -71,9 +71,9 @@ struct Expectation {
   Duration after{};
   Duration within{};
   Kind kind{Kind::kMode};
-  ModeSet modes;         ///< kMode: one of these.
-  ConditionSet conditions;  ///< kCondition: any of these.
-  EventCode event{};     ///< kEvent
+  ModeSet modes;                      ///< kMode: one of these.
+  ConditionSet conditions;            ///< kCondition: any of these.
+  EventCode event{};                  ///< kEvent
   const Quantity* quantity{nullptr};  ///< kBound: within `range` all the time.
   Range range;
   [[nodiscard]] std::string text() const;
@@ -104,6 +104,7 @@ struct FlightCase {
   std::vector<FaultPlan> faults;
   std::vector<Expectation> expectations;
   CaseLimits limits;
+  std::string gap;  ///< Why it is known to fail; empty: it is to pass.
 };
 
 /// Reading of names. All throw InputError that lists what there is.

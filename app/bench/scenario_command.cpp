@@ -114,7 +114,7 @@ ExitCode flyScenarios(const Options& o) {
   }
   if (!o.json) fmt::print("{}\n", summary(results, toSeconds(monotonicNow() - began)));
   if (!o.junit.empty()) writeJunit(o.junit, "scenarios", results);
-  return allPassed(results) ? ExitCode::kOk : ExitCode::kFailed;
+  return noneFailed(results) ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 }  // namespace

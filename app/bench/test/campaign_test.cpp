@@ -1,0 +1,250 @@
+// Scenario files and the safety campaign: what they read, what they notice, and that nothing is
+// passed by for good.
+
+#include "app/bench/campaign.h"
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/bench/case_report.h"
+#include "app/bench/case_runner.h"
+#include "app/bench/worker_pool.h"
+
+namespace tautline::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kScenarios = fs::path(TAUTLINE_SOURCE_DIR) / "config" / "scenarios";
+
+/// A scenario with this text after its head, in a file of its own beside the shipped ones' folder.
+FlightCase scenario(const std::string& text) {
+  const fs::path path = fs::path(::testing::TempDir()) / "tautline_case.scenario.toml";
+  std::ofstream(path) << "version = 1\nname = \"test\"\nscene = \""
+                      << (kScenarios / "../scenes/open.scene.toml").string() << "\"\nmission = \""
+                      << (kScenarios / "campaign.mission.toml").string()
+                      << "\"\nstation_config = \"" << (kScenarios / "../station.toml").string()
+                      << "\"\n"
+                      << text;
+  FlightCase flight = readScenario(path.string());
+  fs::remove(path);
+  return flight;
+}
+
+std::string failureOf(const std::string& text) { return runCase(scenario(text), nullptr).failure; }
+
+std::string problemOf(const std::string& text) {
+  try {
+    static_cast<void>(scenario(text));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(Scenario, ShippedOnesPass) {
+  int count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(kScenarios)) {
+    if (!entry.path().string().ends_with(".scenario.toml")) continue;
+    const CaseResult r = runCase(readScenario(entry.path().string()), nullptr);
+    EXPECT_EQ(r.failure, "") << r.name;
+    ++count;
+  }
+  EXPECT_GE(count, 5);
+}
+
+TEST(Scenario, WithoutFaultsTheMissionIsFlownAndLanded) {
+  const CaseResult r = runCase(scenario("[limits]\nend_mode = \"STANDBY\"\nlanded = true\n"
+                                        "[[expect]]\nphase = \"AUTO\"\nwithin_s = 60.0\n"
+                                        "event = \"mission completed\"\n"),
+                               nullptr);
+  EXPECT_EQ(r.failure, "");
+  EXPECT_GT(r.height_max_m, 1.0);
+  EXPECT_FALSE(r.faulted);
+}
+
+TEST(Scenario, WhatIsNotMetIsSaid) {
+  const auto contains = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(
+      contains(failureOf("[limits]\nmax_height_m = 0.5\n"), "above the floor (limit 0.50 m)"));
+  EXPECT_TRUE(contains(failureOf("[limits]\nend_mode = \"ESTOP\"\n"), "expected to end in ESTOP"));
+  EXPECT_TRUE(
+      contains(failureOf("[[expect]]\nphase = \"HOLD\"\nwithin_s = 1.0\nmode = \"ESTOP\"\n"),
+               "expected ESTOP within 1 s: in HOLD"));
+  EXPECT_TRUE(
+      contains(failureOf("[[expect]]\nphase = \"TAKEOFF\"\nwithin_s = 9.0\nbound = \"height_m\"\n"
+                         "max = 0.4\n"),
+               "expected height_m from"));
+  EXPECT_TRUE(
+      contains(failureOf("[[fault]]\ntarget = \"motors\"\nmode = \"off\"\nphase = \"HOLD\"\n"),
+               "crash: hard landing"));
+  EXPECT_TRUE(
+      contains(failureOf("[[fault]]\ntarget = \"encoder\"\nmode = \"off\"\nphase = \"ESTOP\"\n"),
+               "never got as far as its fault"));
+  EXPECT_TRUE(contains(failureOf("[[sequence]]\nfrom = \"STANDBY\"\nto = \"ESTOP\"\n"),
+                       "ARMED followed STANDBY"));
+}
+
+TEST(Scenario, NamesThatAreNoneAreListedWithLineAndKey) {
+  const auto says = [](const std::string& text, std::initializer_list<const char*> parts) {
+    const std::string problem = problemOf(text);
+    for (const char* part : parts)
+      EXPECT_NE(problem.find(part), std::string::npos) << part << " is not in: " << problem;
+  };
+  says("[[fault]]\ntarget = \"encoder\"\nmode = \"off\"\nphase = \"FLY\"\n",
+       {"tautline_case.scenario.toml:", "FLY", "STANDBY", "REEL_STALE"});
+  says("[limits]\nend_mode = \"STANDBY AIR\"\n", {"AIR", "TAKEOFF"});
+  says("[[expect]]\ncondition = \"COLD\"\n", {"COLD", "ANGLES_STALE"});
+  says("[[expect]]\nevent = \"tea is ready\"\n", {"tea is ready", "mission completed"});
+  says("[[expect]]\nbound = \"mood\"\n", {"mood", "height_m"});
+  says("[[expect]]\nwithin_s = 1.0\n", {"one of mode, condition, event, bound"});
+  says("[[operator]]\nverb = \"sing\"\n", {"sing", "navigate"});
+  says("[[fault]]\ntarget = \"camera\"\nmode = \"off\"\n", {"not supported", "no camera"});
+  says("colour = \"red\"\n", {"colour"});
+}
+
+TEST(Scenario, TheSameSeedGivesTheSameFlight) {
+  const char* text =
+      "seed = 7\n[[fault]]\ntarget = \"link.vehicle\"\nmode = \"garbage\"\nphase = \"AUTO\"\nfor_s "
+      "= 4.0\n"
+      "value = 0.1\n";
+  const CaseResult a = runCase(scenario(text), nullptr);
+  const CaseResult b = runCase(scenario(text), nullptr);
+  FlightCase other = scenario(text);
+  other.bench.seed = 8;
+  const CaseResult c = runCase(other, nullptr);
+  EXPECT_EQ(a.height_max_m, b.height_max_m);
+  EXPECT_EQ(a.flight_s, b.flight_s);
+  EXPECT_NE(a.height_max_m, c.height_max_m);
+}
+
+TEST(Bench, FaultsRoundTheMachine) {
+  // The loop stalls: seen as missed ticks. The clock jumps: nobody may take old samples for new.
+  for (const char* mode : {"delayed", "wrong"}) {
+    const std::string text =
+        std::string("[[fault]]\ntarget = \"loop\"\nmode = \"") + mode +
+        "\"\nphase = \"AUTO\"\nat_s = 2.0\nfor_s = 2.0\nvalue = 0.4\n" +
+        (std::string(mode) == "delayed"
+             ? "[[expect]]\nphase = \"FAULT\"\nwithin_s = 1.5\ncondition = \"OVERRUNS\"\n"
+             : "");
+    EXPECT_EQ(failureOf(text), "") << mode;
+  }
+  // Nobody hears the operator ask for the mission: the drone hovers and is landed when he is heard.
+  EXPECT_EQ(failureOf("[[fault]]\ntarget = \"link.operator\"\nmode = \"off\"\nphase = \"HOLD\"\n"
+                      "for_s = 5.0\n[[expect]]\nphase = \"HOLD\"\nafter_s = 4.0\nwithin_s = 0.1\n"
+                      "mode = \"HOLD\"\n[limits]\nend_mode = \"STANDBY\"\nlanded = true\n"),
+            "");
+  EXPECT_EQ(
+      failureOf("[[fault]]\ntarget = \"bus\"\nmode = \"unplug\"\nphase = \"HOLD\"\nfor_s = 2.0\n"
+                "[[expect]]\nphase = \"FAULT\"\nwithin_s = 0.2\ncondition = \"LINK_LOST\"\n"),
+      "");
+}
+
+class CampaignTable : public ::testing::Test {
+ protected:
+  static const Campaign& campaign() {
+    static const Campaign table = readCampaign((kScenarios / "campaign.toml").string());
+    return table;
+  }
+};
+
+TEST_F(CampaignTable, HasThreeThousandCasesWithNamesOfTheirOwn) {
+  const auto cases = campaignCases(campaign());
+  EXPECT_GE(cases.size(), 3000U);
+  std::set<std::string> names;
+  for (const CampaignCase& c : cases) names.insert(c.name);
+  EXPECT_EQ(names.size(), cases.size());
+}
+
+TEST_F(CampaignTable, HasEveryKindOfTheMenuThatTheBenchCanFly) {
+  for (const sim::FaultKind& kind : sim::faultMenu()) {
+    // Contacts need a scene with one: config/scenarios/contact_*.scenario.toml.
+    const bool contact =
+        kind.mode == sim::FaultMode::kContactSlip || kind.mode == sim::FaultMode::kContactOff;
+    if (kind.place == sim::FaultPlace::kNowhere || contact) continue;
+    EXPECT_TRUE(std::any_of(campaign().rows.begin(), campaign().rows.end(),
+                            [&](const CampaignRow& row) {
+                              return row.fault.target == kind.target && row.fault.mode == kind.mode;
+                            }))
+        << kind.effect;
+  }
+}
+
+TEST_F(CampaignTable, EveryFlagAndFlightModeIsARow) {
+  std::set<std::string> labels;
+  for (const CampaignRow& row : campaign().rows) labels.insert(describe(row.fault));
+  for (const sim::VehicleCode& c : sim::vehicleFlags())
+    EXPECT_TRUE(labels.contains(std::string("flag:") + c.name + " on")) << c.name;
+  for (const sim::VehicleCode& c : sim::vehicleFlightModes())
+    EXPECT_TRUE(labels.contains(std::string("mode:") + c.name + " on")) << c.name;
+}
+
+TEST_F(CampaignTable, SeedsComeFromTheName) {
+  const auto cases = campaignCases(campaign());
+  EXPECT_NE(flightOf(campaign(), cases[0]).bench.seed, flightOf(campaign(), cases[1]).bench.seed);
+  EXPECT_EQ(flightOf(campaign(), cases[0]).bench.seed, flightOf(campaign(), cases[0]).bench.seed);
+}
+
+TEST(WorkerPool, ADeadWorkerIsAFailedCaseAndTheOthersGoOn) {
+  PoolJob job;
+  job.count = 7;
+  job.workers = 2;
+  job.name = [](std::size_t i) { return "case " + std::to_string(i); };
+  job.fly = [](std::size_t i) {
+    if (i == 2) std::raise(SIGABRT);
+    if (i == 5) throw InputError({.problem = "bad"});
+    CaseResult r;
+    r.name = "case " + std::to_string(i);
+    r.flight_s = static_cast<double>(i);
+    return r;
+  };
+  int heard = 0;
+  job.each_result = [&](const CaseResult&) { ++heard; };
+  const auto results = flyAll(job);
+  ASSERT_EQ(results.size(), 7U);
+  EXPECT_EQ(heard, 7);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i].name, "case " + std::to_string(i));
+    EXPECT_EQ(results[i].passed(), i != 2 && i != 5);
+  }
+  EXPECT_NE(results[2].failure.find("signal 6"), std::string::npos);
+  EXPECT_NE(results[5].failure.find("bad"), std::string::npos);
+  EXPECT_EQ(results[6].flight_s, 6.0);
+}
+
+TEST(CaseReport, JsonComesBackAndJunitIsWritten) {
+  CaseResult r;
+  r.name = "a <b> & \"c\"";
+  r.seed = 0xFFFFFFFFFFFFFFFFULL;
+  r.failure = "crash";
+  r.end = Mode::kLand;
+  r.flight_s = 12.5;
+  const CaseResult back = caseFromJson(toJson(r));
+  EXPECT_EQ(back.name, r.name);
+  EXPECT_EQ(back.seed, r.seed);
+  EXPECT_EQ(back.failure, r.failure);
+  EXPECT_EQ(back.end, r.end);
+  EXPECT_THROW(static_cast<void>(caseFromJson("half a li")), InputError);
+
+  const fs::path path = fs::path(::testing::TempDir()) / "tautline_junit.xml";
+  CaseResult gap = r;
+  gap.gap = "not yet";
+  writeJunit(path.string(), "suite", {r, gap, CaseResult{}});
+  std::ifstream in(path);
+  const std::string xml{std::istreambuf_iterator<char>(in), {}};
+  fs::remove(path);
+  EXPECT_NE(xml.find("tests=\"3\" failures=\"1\" skipped=\"1\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("a &lt;b&gt; &amp; &quot;c&quot;"), std::string::npos);
+  EXPECT_FALSE(noneFailed({r}));
+  EXPECT_TRUE(noneFailed({gap}));
+}
+
+}  // namespace
+}  // namespace tautline::bench
