@@ -34,9 +34,9 @@ struct FieldDimension {
 struct FieldInfo {
   const char* name;
   FieldType type;
-  const MessageInfo* message;                 ///< Of kMessage, else nullptr.
+  const MessageInfo* message;                  ///< Of kMessage, else nullptr.
   std::span<const FieldDimension> dimensions;  ///< Outermost first; empty: a single value.
-  const char* comment;                        ///< Unit or meaning, as the .lcm file says it.
+  const char* comment;                         ///< Unit or meaning, as the .lcm file says it.
 };
 
 struct MessageInfo {

@@ -45,13 +45,18 @@ class CommandCatcher final : public TelemetrySink {
 
 using ChunkKey = std::pair<std::int64_t, std::int32_t>;
 
+/// Whether that program's PARAMS are a station's configuration; a simulator has one, too.
+bool isStation(const tautline::params_t& params) {
+  return params.program == "tautline-station" || params.program == "tautline-bench";
+}
+
 /// What a first pass over the log collects.
 struct Contents {
   std::optional<StationConfig> config;
   std::map<ChunkKey, tautline::mission_chunk_t> chunks;
   std::vector<tautline::station_input_t> inputs;
   std::map<std::int64_t, std::vector<std::uint8_t>> commands;  ///< Payloads by utime.
-  std::string damage;                                          ///< Of the file, as ReplayResult has it.
+  std::string damage;  ///< Of the file, as ReplayResult has it.
 };
 
 Contents readLog(const std::filesystem::path& path) {
@@ -64,7 +69,7 @@ Contents readLog(const std::filesystem::path& path) {
     tautline::params_t params;
     tautline::mission_chunk_t chunk;
     tautline::station_input_t input;
-    if (event->channel == channel::kParams && !out.config && decode(params)) {
+    if (event->channel == channel::kParams && !out.config && decode(params) && isStation(params)) {
       out.config = parseConfig<StationConfig>(params.toml, path.string() + " (PARAMS)");
     } else if (event->channel == channel::kMissionChunk && decode(chunk)) {
       out.chunks[{chunk.session, chunk.sequence}] = chunk;

@@ -55,9 +55,9 @@ ExitCode run(const Options& options) {
   machine.loop_rate_hz = options.rate_hz;
   machine.latency_s = options.seconds;
   machine.lcm_url = options.lcm_url;
-  machine.log_folder = !options.log_folder.empty()                ? options.log_folder
+  machine.log_folder = !options.log_folder.empty()               ? options.log_folder
                        : std::filesystem::exists(kInstalledLogs) ? kInstalledLogs
-                                                                  : ".";
+                                                                 : ".";
   if (!options.config.empty()) {
     readStationConfig(machine, options.config);
   } else if (std::filesystem::exists(kInstalledConfig)) {
@@ -112,7 +112,8 @@ void addDoctorCommand(CLI::App& root, ExitCode& result) {
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "One JSON object for machines");
   verb->footer(
-      "Example: tautline doctor --config config/station.toml\nExit code 1 if there is a problem; advice alone is none.\n"
+      "Example: tautline doctor --config config/station.toml\nExit code 1 if there is a problem; "
+      "advice alone is none.\n"
       "Run it as the user that will fly: rights are that user's.");
   verb->callback([options, &result] { result = run(*options); });
 }

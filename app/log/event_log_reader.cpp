@@ -16,8 +16,8 @@ namespace tautline {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kSyncWord{0xED, 0xA1, 0xDA, 0x01};
-constexpr std::size_t kHeader = 28;          // sync word, number, time, both lengths [bytes]
-constexpr std::size_t kLongestChannel = 999; // what LCM's own reader takes
+constexpr std::size_t kHeader = 28;           // sync word, number, time, both lengths [bytes]
+constexpr std::size_t kLongestChannel = 999;  // what LCM's own reader takes
 
 template <class Unsigned>
 Unsigned bigEndian(std::span<const std::uint8_t> bytes) {
@@ -38,9 +38,10 @@ bool endsWhole(std::span<const std::uint8_t> behind) {
 }
 
 [[noreturn]] void cannotRead(const std::filesystem::path& file, const std::string& problem) {
-  throw InputError({.file = file.string(),
-                    .problem = problem,
-                    .remedy = "name a log that `tautline log record`, lcm-logger or the bench wrote"});
+  throw InputError(
+      {.file = file.string(),
+       .problem = problem,
+       .remedy = "name a log that `tautline log record`, lcm-logger or the bench wrote"});
 }
 
 /// The whole file in memory, or an empty span for an empty file.
@@ -102,10 +103,9 @@ EventLogReader::~EventLogReader() {
 }
 
 std::size_t EventLogReader::findSyncWord(std::size_t from) const {
-  return static_cast<std::size_t>(
-      std::search(bytes_.begin() + static_cast<std::ptrdiff_t>(from), bytes_.end(),
-                  kSyncWord.begin(), kSyncWord.end()) -
-      bytes_.begin());
+  return static_cast<std::size_t>(std::search(bytes_.begin() + static_cast<std::ptrdiff_t>(from),
+                                              bytes_.end(), kSyncWord.begin(), kSyncWord.end()) -
+                                  bytes_.begin());
 }
 
 std::optional<LogEvent> EventLogReader::wholeEventAt(std::size_t offset) const {
@@ -134,7 +134,8 @@ std::optional<LogEvent> EventLogReader::wholeEventAt(std::size_t offset) const {
 /// fit to each other: its header is damaged.
 bool EventLogReader::numberIsWrong(const LogEvent& event) const {
   if (event.offset != position_ || event.number == expected_) return false;
-  const auto behind = static_cast<std::size_t>(event.data.data() + event.data.size() - bytes_.data());
+  const auto behind =
+      static_cast<std::size_t>(event.data.data() + event.data.size() - bytes_.data());
   const auto following = wholeEventAt(behind);
   return following && following->number == expected_ + 1;
 }
@@ -146,9 +147,9 @@ void EventLogReader::noteLoss(std::size_t end, std::optional<std::int64_t> next_
   if (damage.bytes == 0 && (!counted || *next_number == expected_)) return;
   damage.events_lost = counted ? *next_number - expected_ : 1;
   damage.at_least = !counted;
-  damage.what = damage.bytes == 0  ? "whole events are missing"
-                : next_number      ? "no whole event"
-                                   : "the file ends within an event";
+  damage.what = damage.bytes == 0 ? "whole events are missing"
+                : next_number     ? "no whole event"
+                                  : "the file ends within an event";
   damage_.push_back(damage);
 }
 

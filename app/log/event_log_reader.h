@@ -30,11 +30,11 @@ struct LogEvent {
 
 /// A place of the file that is no event.
 struct LogDamage {
-  std::uint64_t offset{};       ///< First byte that is not part of a whole event.
-  std::uint64_t bytes{};        ///< Up to the next whole event; 0: events are missing there.
-  std::int64_t events_lost{};   ///< By the events' numbers.
-  bool at_least{};              ///< More may be lost: no event behind tells how many.
-  const char* what{};           ///< In words.
+  std::uint64_t offset{};      ///< First byte that is not part of a whole event.
+  std::uint64_t bytes{};       ///< Up to the next whole event; 0: events are missing there.
+  std::int64_t events_lost{};  ///< By the events' numbers.
+  bool at_least{};             ///< More may be lost: no event behind tells how many.
+  const char* what{};          ///< In words.
 };
 
 /// "offset 1234: 4096 bytes that are no event; 12 events lost".

@@ -51,10 +51,10 @@ class EventLogWriter {
     void operator()(lcm_eventlog_t* log) const noexcept { lcm_eventlog_destroy(log); }
   };
   std::unique_ptr<lcm_eventlog_t, Close> log_;
-  std::int64_t number_{0};            // Of the next event.
-  std::int64_t written_{0};           // Events in the file, or on their way.
-  std::int64_t flushed_written_{0};   // As of the last flush: events,
-  std::int64_t flushed_end_{0};       // and size of the file [bytes].
+  std::int64_t number_{0};           // Of the next event.
+  std::int64_t written_{0};          // Events in the file, or on their way.
+  std::int64_t flushed_written_{0};  // As of the last flush: events,
+  std::int64_t flushed_end_{0};      // and size of the file [bytes].
 };
 
 /// Whether an EventLogWriter, of any process, is at that file now.

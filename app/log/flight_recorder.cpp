@@ -13,6 +13,7 @@
 #include "app/log/log_folder.h"
 #include "app/log/message_decoder.h"
 #include "common/error.h"
+#include "common/mission/mission_file.h"
 #include "common/vehicle.h"
 #include "control/motion_executor.h"
 #include "control/supervisor.h"
@@ -26,7 +27,9 @@ using std::chrono::seconds;
 
 constexpr Duration kSilence = seconds(3);
 constexpr Duration kRetry = seconds(1);
-constexpr std::size_t kRingLimit = 200'000;  // messages; an endless flood must not take all memory
+// Messages; an endless flood must not take all memory.
+constexpr std::size_t kRingLimit = 200'000;
+constexpr std::size_t kLastingLimit = 256;  // the longest mission has fewer pieces
 
 constexpr const char* kNoMission = "no-mission";
 
@@ -64,7 +67,9 @@ void FlightRecorder::onMessage(const std::string& channel, std::int64_t utime,
 void FlightRecorder::keepForStart(const std::string& channel, std::int64_t utime,
                                   std::span<const std::uint8_t> data, Time now) {
   Message message{channel, utime, {data.begin(), data.end()}, now};
-  if (const std::string key = lastingKey(channel, data); !key.empty()) lasting_[key] = message;
+  const std::string key = lastingKey(channel, data);
+  if (!key.empty() && (lasting_.size() < kLastingLimit || lasting_.contains(key)))
+    lasting_[key] = message;
   ring_.push_back(std::move(message));
   while (ring_.front().heard < now - config_.before || ring_.size() > kRingLimit) ring_.pop_front();
 }
@@ -135,8 +140,9 @@ void FlightRecorder::append(const std::string& channel, std::int64_t utime,
 
 void FlightRecorder::nameByMission(std::int64_t mission_hash) {
   if (mission_hash == 0) return;
+  constexpr std::size_t kDigits = 8;
   const fs::path path =
-      freeName(fmt::format("{:016x}", static_cast<std::uint64_t>(mission_hash)).substr(0, 8));
+      freeName(hashText(static_cast<std::uint64_t>(mission_hash)).substr(0, kDigits));
   std::error_code error;
   fs::rename(file_, path, error);
   named_ = true;

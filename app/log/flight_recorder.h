@@ -23,9 +23,9 @@ namespace tautline {
 
 struct FlightRecorderConfig {
   std::filesystem::path folder;
-  std::uint64_t quota{4ULL << 30U};  ///< Of all logs in the folder [bytes].
-  Duration before{std::chrono::seconds(2)};  ///< Kept from before the arming.
-  Duration after{std::chrono::seconds(2)};   ///< Recorded after STANDBY is back.
+  std::uint64_t quota{4ULL << 30U};               ///< Of all logs in the folder [bytes].
+  Duration before{std::chrono::seconds(2)};       ///< Kept from before the arming.
+  Duration after{std::chrono::seconds(2)};        ///< Recorded after STANDBY is back.
   Duration sync_period{std::chrono::seconds(1)};  ///< What a power cut may cost.
 };
 
@@ -74,8 +74,9 @@ class FlightRecorder {
   FlightRecorderConfig config_;
   std::function<void(const std::string&)> say_;
 
-  std::deque<Message> ring_;               // of the last seconds
-  std::map<std::string, Message> lasting_; // sent rarely, and no log can do without: by what it is of
+  std::deque<Message> ring_;  // of the last seconds
+  std::map<std::string, Message>
+      lasting_;  // sent rarely, and no log can do without: by what it is of
 
   std::unique_ptr<EventLogWriter> log_;
   std::filesystem::path file_;
@@ -84,7 +85,7 @@ class FlightRecorder {
   bool named_{false};                  // by its mission
   std::optional<Time> standby_since_;  // while recording
   Time next_sync_{};
-  Time next_try_{};                    // of a disk that was full, or a file that could not be made
+  Time next_try_{};  // of a disk that was full, or a file that could not be made
   bool disk_full_{false};
 
   std::optional<Time> last_state_;

@@ -23,9 +23,8 @@ bool isLogName(const std::string& name) {
   const std::size_t at = name.rfind(".lcm");
   if (at == std::string::npos) return false;
   const std::string rest = name.substr(at + 4);
-  return rest.empty() ||
-         (rest.size() > 1 && rest[0] == '.' &&
-          rest.find_first_not_of("0123456789", 1) == std::string::npos);
+  return rest.empty() || (rest.size() > 1 && rest[0] == '.' &&
+                          rest.find_first_not_of("0123456789", 1) == std::string::npos);
 }
 
 /// Oldest first.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
 
@@ -107,10 +108,11 @@ DecodedMessage takeMessage(const MessageInfo& info, Cursor& in, int depth) {
 }
 
 std::string textOf(const DecodedMessage& value) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>()))
+    return std::isnan(value.get<double>()) ? "nan" : value.get<double>() > 0.0 ? "inf" : "-inf";
   // Bytes that are no UTF-8 must not end a program that shows them.
-  return value.is_string()
-             ? value.get<std::string>()
-             : value.dump(-1, ' ', false, DecodedMessage::error_handler_t::replace);
+  return value.is_string() ? value.get<std::string>()
+                           : value.dump(-1, ' ', false, DecodedMessage::error_handler_t::replace);
 }
 
 void flattenMessage(const MessageInfo& info, const DecodedMessage& message,

@@ -16,8 +16,8 @@
 
 namespace tautline {
 
-/// Values by name, in the order of the .lcm file. Arrays are arrays; what is no number (NaN,
-/// infinite) is printed as null.
+/// Values by name, in the order of the .lcm file. Arrays are arrays. JSON has no NaN and no
+/// infinity: dump() prints them as null.
 using DecodedMessage = nlohmann::ordered_json;
 
 /// First eight bytes of a packet; nullopt if it has not as many.
@@ -34,7 +34,7 @@ using DecodedMessage = nlohmann::ordered_json;
 /// A single value of a message, e.g. "position_m[2]".
 struct FlatField {
   std::string name;
-  std::string value;    ///< As JSON has it; strings without their quotes.
+  std::string value;    ///< As JSON has it; strings without their quotes; nan, inf and -inf.
   const char* comment;  ///< FieldInfo::comment.
 };
 

@@ -61,9 +61,7 @@ bool stringsFit(const LogEvent& event, std::size_t offset, int count) {
 bool stringsAreSound(const LogEvent& event, const event_t*) {
   return stringsFit(event, 8 + 8 + 1 + 4, 3);
 }
-bool stringsAreSound(const LogEvent& event, const params_t*) {
-  return stringsFit(event, 8 + 8, 3);
-}
+bool stringsAreSound(const LogEvent& event, const params_t*) { return stringsFit(event, 8 + 8, 3); }
 bool stringsAreSound(const LogEvent&, const void*) { return true; }
 
 struct UtimeSpan {

@@ -169,9 +169,9 @@ struct FlightLog {
   std::map<std::string, std::string> programs;      ///< Name and version of who published PARAMS.
 };
 
-/// Reads a log written by `tautline log record`, lcm-logger or the bench. Messages that do not decode and damaged
-/// places are counted. Throws InputError when the file cannot be read or holds no message of the
-/// station or the simulator.
+/// Reads a log written by `tautline log record`, lcm-logger or the bench. Messages that do not
+/// decode and damaged places are counted. Throws InputError when the file cannot be read or holds
+/// no message of the station or the simulator.
 [[nodiscard]] FlightLog readFlightLog(const std::filesystem::path& file);
 
 }  // namespace tautline::report

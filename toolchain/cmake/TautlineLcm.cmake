@@ -37,7 +37,7 @@ function(tautline_lcm_message_table target)
   set(table "${CMAKE_CURRENT_BINARY_DIR}/${target}.cpp")
   list(TRANSFORM ARG_FILES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE inputs)
   add_custom_command(OUTPUT "${table}"
-    COMMAND Python3::Interpreter "${script}" ${ARG_FUNCTION} "${table}" ${inputs}
+    COMMAND "${PYTHON3}" "${script}" ${ARG_FUNCTION} "${table}" ${inputs}
     DEPENDS "${script}" ${inputs} COMMENT "Generating the table of LCM messages" VERBATIM)
   tautline_library(${target} SOURCES "${table}" LINK ${ARG_TYPES})
 endfunction()

@@ -46,8 +46,9 @@ telemetry over LCM; with systemd services and udev rules.
 It comes up disarmed after every start.")
 tautline_package(tools
   PROGRAMS tautline
+  DEPENDS iproute2
   CROSS_DEPENDS "${base_lcm}, libfmt9 (>= 9.1.0)"
-  RECOMMENDS gnuplot-nox
+  RECOMMENDS "gnuplot-nox, psmisc"
   SUMMARY "Ground station of a tethered drone: operator's command line
 Arms, takes off, flies missions and lands; checks and imports mission
 files, shows what goes over LCM, records flights, reports what a log says,

@@ -32,7 +32,7 @@ struct Machine {
   double loop_rate_hz{100.0};  ///< Of the loop that the latency check imitates.
   double latency_s{10.0};      ///< How long it does.
 
-  std::filesystem::path config_file;            ///< Of the station; empty: there is none to look at.
+  std::filesystem::path config_file;  ///< Of the station; empty: there is none to look at.
   std::shared_ptr<const StationConfig> config;  ///< What is in it; nullptr if it cannot be read,
   std::string config_problem;                   ///< and then the one line that says why.
   std::string lcm_url;

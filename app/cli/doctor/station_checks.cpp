@@ -91,19 +91,21 @@ std::string serialRemedy(const SerialConfig& config, SerialStatus status,
   }
 }
 
-std::string bringUp(const std::string& interface) {
+std::string bringUp(const std::string& interface, int bitrate) {
   return fmt::format("sudo ip link set {} up type can bitrate {} restart-ms 100", interface,
-                     kDefaultBitrate);
+                     bitrate);
 }
 
-std::string canRemedy(const std::string& interface, CanStatus status) {
+std::string canRemedy(const CanConfig& config, CanStatus status, int bitrate) {
   switch (status) {
     case CanStatus::kNoCan:
       return "sudo modprobe can-raw";
     case CanStatus::kDown:
-      return bringUp(interface);
+      return config.virtual_only ? fmt::format("sudo ip link set {} up", config.interface)
+                                 : bringUp(config.interface, bitrate);
     default:
-      return "ip -brief link show type can; sudo editor /etc/tautline/station.toml   # can.interface";
+      return "ip -brief link show type can; sudo editor /etc/tautline/station.toml   # "
+             "can.interface";
   }
 }
 
@@ -190,7 +192,7 @@ Finding checkCan(const Machine& machine) {
   const CanOpenResult opened = CanSocket(config, kTautlineIds).open();
   if (!opened)
     return {kProblem, opened.reason, "a CAN interface that is up",
-            canRemedy(config.interface, opened.status)};
+            canRemedy(config, opened.status, configuredBitrate(machine))};
   return judgeCanLink(outputOf("ip -details -json link show dev " + config.interface),
                       config.interface, configuredBitrate(machine));
 }
@@ -203,7 +205,8 @@ Finding judgeCanLink(const std::string& ip_output, const std::string& interface,
   const std::string kind = info.value("info_kind", "unknown");
   const nlohmann::json can = info.value("info_data", nlohmann::json::object());
   if (kind == "vcan" || kind == "vxcan") return {kOk, interface + " is up, virtual (" + kind + ")"};
-  const std::string again = fmt::format("sudo ip link set {} down && {}", interface, bringUp(interface));
+  const std::string again =
+      fmt::format("sudo ip link set {} down && {}", interface, bringUp(interface, wanted_bitrate));
   const std::string state = can.value("state", "unknown");
   const int bitrate = can.value("bittiming", nlohmann::json::object()).value("bitrate", 0);
   const std::string measured = fmt::format("{} is up, {}, {} bit/s", interface, state, bitrate);
@@ -211,9 +214,9 @@ Finding judgeCanLink(const std::string& ip_output, const std::string& interface,
     return {kProblem, measured, "state ERROR-ACTIVE; look for a short circuit or swapped wires",
             again};
   if (bitrate == 0)
-    return {kAdvice, interface + " is up, bit rate unknown", fmt::format("{} bit/s", wanted_bitrate),
-            again};
-  if (wanted_bitrate != 0 && bitrate != wanted_bitrate)
+    return {kAdvice, interface + " is up, bit rate unknown",
+            fmt::format("{} bit/s", wanted_bitrate), again};
+  if (bitrate != wanted_bitrate)
     return {kProblem, measured, fmt::format("{} bit/s (/etc/tautline/can.conf)", wanted_bitrate),
             again};
   if (state != "ERROR-ACTIVE")
@@ -244,8 +247,9 @@ Finding checkStationHeard(const Machine& machine) {
 
 Finding checkLogDisk(const Machine& machine) {
   return roomOn(machine.log_folder, kLogRoom,
-                "sudo apt-get clean && sudo journalctl --vacuum-size=50M; then move logs away from " +
-                    machine.log_folder.string());
+                fmt::format("sudo apt-get clean && sudo journalctl --vacuum-size=50M; what else is "
+                            "large: du -xah {} | sort -h | tail",
+                            machine.log_folder.string()));
 }
 
 Finding checkBlackBoxDisk(const Machine& machine) {

@@ -32,7 +32,7 @@ namespace tautline::cli {
 [[nodiscard]] Finding checkBlackBoxDisk(const Machine& machine);
 
 /// What `ip -details -json link show` (its whole output) says of an interface that is up, judged:
-/// on the bus, and with `wanted_bitrate` [bit/s], 0 = any. Virtual interfaces have neither.
+/// on the bus, and with `wanted_bitrate` [bit/s]. Virtual interfaces have neither.
 [[nodiscard]] Finding judgeCanLink(const std::string& ip_output, const std::string& interface,
                                    int wanted_bitrate);
 

@@ -84,7 +84,8 @@ ExitCode recover(const Options& options) {
 
 void addLogCheck(CLI::App& log, ExitCode& result) {
   const auto options = std::make_shared<Options>();
-  CLI::App* verb = log.add_subcommand("check", "Is a log whole? Exit code 1 if not, with what and where");
+  CLI::App* verb =
+      log.add_subcommand("check", "Is a log whole? Exit code 1 if not, with what and where");
   verb->add_option("log", options->log, "LCM log")->required()->type_name("LOG");
   verb->add_flag("--json", options->json, "One JSON object for machines");
   verb->footer("Example: tautline log check flight.lcm");
@@ -95,7 +96,9 @@ void addLogRecover(CLI::App& log, ExitCode& result) {
   const auto options = std::make_shared<Options>();
   CLI::App* verb = log.add_subcommand(
       "recover", "Write all that is whole of a damaged log; exit code 1 if anything was lost");
-  verb->add_option("log", options->log, "damaged LCM log; stays as it is")->required()->type_name("LOG");
+  verb->add_option("log", options->log, "damaged LCM log; stays as it is")
+      ->required()
+      ->type_name("LOG");
   verb->add_option("-o,--out", options->out, "log to write")->required()->type_name("LOG");
   verb->add_flag("--json", options->json, "One JSON object for machines");
   verb->footer("Example: tautline log recover broken.lcm -o mended.lcm");

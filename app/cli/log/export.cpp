@@ -66,8 +66,7 @@ class CsvTables {
       out << '\n';
     }
     out << event.utime;
-    for (const FlatField& field : fields)
-      out << ',' << (field.value == "null" ? "" : csvCell(field.value));
+    for (const FlatField& field : fields) out << ',' << csvCell(field.value);
     out << '\n';
   }
 
@@ -151,7 +150,8 @@ void addLogExport(CLI::App& log, ExitCode& result) {
                    "File for one JSON object a message, ready for MCAP's JSON encoding; -: stdout")
       ->type_name("FILE")
       ->excludes(csv);
-  verb->footer("Example: tautline log export flight.lcm --channel 'ESTIMATE|COMMAND$' --csv tables");
+  verb->footer(
+      "Example: tautline log export flight.lcm --channel 'ESTIMATE|COMMAND$' --csv tables");
   verb->callback([options, &result] {
     if (options->csv.empty() && options->jsonl.empty())
       throw CLI::RequiredError("--csv or --jsonl");

@@ -18,6 +18,7 @@
 #include "app/cli/log/log_command.h"
 #include "app/log/event_log_reader.h"
 #include "app/log/message_decoder.h"
+#include "common/mission/mission_file.h"
 #include "common/vehicle.h"
 #include "control/motion_executor.h"
 #include "control/supervisor.h"
@@ -77,8 +78,7 @@ void addMission(LogInfo& info, std::span<const std::uint8_t> data) {
   if (status.decode(data.data(), 0, static_cast<int>(data.size())) < 0) return;
   // Take-off and landing run without a mission.
   if (status.mission_hash != 0 && static_cast<MissionState>(status.state) == MissionState::kRunning)
-    addOnce(info.missions,
-            fmt::format("{:016x}", static_cast<std::uint64_t>(status.mission_hash)));
+    addOnce(info.missions, hashText(static_cast<std::uint64_t>(status.mission_hash)));
 }
 
 LogInfo read(const std::string& file) {
@@ -160,10 +160,12 @@ ExitCode run(const Options& options) {
 
 void addLogInfo(CLI::App& log, ExitCode& result) {
   const auto options = std::make_shared<Options>();
-  CLI::App* verb = log.add_subcommand("info", "Time, channels, run mode, missions and modes of a log");
+  CLI::App* verb =
+      log.add_subcommand("info", "Time, channels, run mode, missions and modes of a log");
   verb->add_option("log", options->log, "LCM log, whole or damaged")->required()->type_name("LOG");
   verb->add_flag("--json", options->json, "One JSON object for machines");
-  verb->footer("Example: tautline log info flight.lcm\nWhat happened in the flight: tautline report");
+  verb->footer(
+      "Example: tautline log info flight.lcm\nWhat happened in the flight: tautline report");
   verb->callback([options, &result] { result = run(*options); });
 }
 

@@ -84,8 +84,9 @@ void addLogRecord(CLI::App& log, ExitCode& result) {
   verb->add_option("--dir", options->folder, "Folder of the logs")
       ->capture_default_str()
       ->type_name("DIR");
-  verb->add_option("--quota", options->quota,
-                   "Bytes that all logs of the folder may take (4GB, 500MB); the oldest finished ones go")
+  verb->add_option(
+          "--quota", options->quota,
+          "Bytes that all logs of the folder may take (4GB, 500MB); the oldest finished ones go")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   verb->add_option("--lcm-url", options->lcm_url, "Where the station is")->capture_default_str();

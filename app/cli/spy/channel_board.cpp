@@ -73,7 +73,8 @@ DecodedMessage jsonOf(const std::string& name, const ChannelMeter& channel, Time
   const auto fingerprint = fingerprintOf(channel.lastPacket());
   return {{"channel", name},
           {"type", type == nullptr ? DecodedMessage(nullptr) : DecodedMessage(type->name)},
-          {"fingerprint", fingerprint ? DecodedMessage(fmt::format("{:016x}", static_cast<std::uint64_t>(*fingerprint)))
+          {"fingerprint", fingerprint ? DecodedMessage(fmt::format(
+                                            "{:016x}", static_cast<std::uint64_t>(*fingerprint)))
                                       : DecodedMessage(nullptr)},
           {"messages", channel.messages()},
           {"size_bytes", channel.lastPacket().size()},

@@ -25,7 +25,9 @@ class ChannelMeter {
   void add(std::span<const std::uint8_t> packet, Time now);
 
   [[nodiscard]] std::int64_t messages() const noexcept { return messages_; }
-  [[nodiscard]] const std::vector<std::uint8_t>& lastPacket() const noexcept { return last_packet_; }
+  [[nodiscard]] const std::vector<std::uint8_t>& lastPacket() const noexcept {
+    return last_packet_;
+  }
 
   /// Since the last message.
   [[nodiscard]] Duration age(Time now) const;

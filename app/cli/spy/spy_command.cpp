@@ -49,7 +49,8 @@ class Ear {
 
   /// Handles what comes until `end`, or until a key is typed (`keys`) or the program is to end.
   void listen(Time end, bool keys) {
-    std::array<pollfd, 2> in{{{lcm_.getFileno(), POLLIN, 0}, {keys ? STDIN_FILENO : -1, POLLIN, 0}}};
+    std::array<pollfd, 2> in{
+        {{lcm_.getFileno(), POLLIN, 0}, {keys ? STDIN_FILENO : -1, POLLIN, 0}}};
     while (!termination_requested) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - monotonicNow());
       if (left.count() <= 0) return;
@@ -125,12 +126,13 @@ ExitCode run(const Options& options) {
 
 void addSpyCommand(CLI::App& root, ExitCode& result) {
   const auto options = std::make_shared<Options>();
-  CLI::App* verb = root.add_subcommand(
-      "spy", "Every LCM channel: rate, bandwidth, age, jitter, decoded fields");
+  CLI::App* verb =
+      root.add_subcommand("spy", "Every LCM channel: rate, bandwidth, age, jitter, decoded fields");
   verb->add_option("--filter", options->filter,
                    "Only channels in whose name this regular expression is found")
       ->type_name("RE");
-  verb->add_flag("--once", options->once, "Print one table (or JSON object) and end; 4: nothing heard");
+  verb->add_flag("--once", options->once,
+                 "Print one table (or JSON object) and end; 4: nothing heard");
   verb->add_flag("--json", options->json, "JSON objects instead of the screen");
   verb->add_option("--for", options->seconds, "Listen so many seconds for each table")
       ->check(CLI::Range(0.1, 3600.0))

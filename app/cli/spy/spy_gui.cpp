@@ -34,8 +34,9 @@ fs::path typesJar() {
        {fs::read_symlink("/proc/self/exe", ignored).parent_path(), fs::path("/usr/share/java")}) {
     if (fs::exists(folder / kTypes, ignored)) return folder / kTypes;
   }
-  missing(kTypes, "make it in the source folder: ./run spy (or cmake --build --preset release "
-                  "--target java_types)");
+  missing(kTypes,
+          "make it in the source folder: ./run spy (or cmake --build --preset release "
+          "--target java_types)");
 }
 
 }  // namespace

@@ -89,7 +89,8 @@ void SpyScreen::editFilter(int pressed) {
   }
 }
 
-/// The cursor in the table, or the first row of the fields, which draw() keeps within what is there.
+/// The cursor in the table, or the first row of the fields, which draw() keeps within what is
+/// there.
 void SpyScreen::move(std::ptrdiff_t by, const ChannelBoard& live) {
   if (fields_shown_) {
     scroll_ = static_cast<std::size_t>(
@@ -144,8 +145,8 @@ void SpyScreen::drawFields(const ChannelMeter& channel, Time now, std::size_t ro
   const auto message = type == nullptr ? std::nullopt : decode(*type, channel.lastPacket());
   if (!message) {
     const auto fingerprint = fingerprintOf(channel.lastPacket()).value_or(0);
-    out.push_back({fmt::format("not decoded; fingerprint {:016x}",
-                               static_cast<std::uint64_t>(fingerprint))});
+    out.push_back(
+        {fmt::format("not decoded; fingerprint {:016x}", static_cast<std::uint64_t>(fingerprint))});
     return;
   }
   const std::vector<FlatField> fields = flatten(*type, *message);

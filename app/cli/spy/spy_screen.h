@@ -57,9 +57,9 @@ class SpyScreen {
   std::optional<std::string> typing_;  // A filter that is being typed,
   std::string complaint_;              // and what was wrong with it.
   std::optional<Frozen> paused_;
-  std::string selected_;               // Channel under the cursor.
+  std::string selected_;  // Channel under the cursor.
   bool fields_shown_{false};
-  std::size_t scroll_{0};              // First row shown, of the table or of the fields.
+  std::size_t scroll_{0};  // First row shown, of the table or of the fields.
   std::size_t page_{1};
   bool done_{false};
 };

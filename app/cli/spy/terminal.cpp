@@ -40,6 +40,7 @@ void writeAll(std::string_view text) {
   }
 }
 
+constexpr int kSequenceMs = 25;
 constexpr std::string_view kOtherScreen = "\x1b[?1049h\x1b[?25l";
 constexpr std::string_view kFirstScreen = "\x1b[?25h\x1b[?1049l";
 
@@ -73,14 +74,19 @@ Terminal::Size Terminal::size() const {
   return {size.ws_row, size.ws_col};
 }
 
-int Terminal::readKey() {
+bool Terminal::takeTyped(int wait_ms) {
   std::array<char, 256> bytes{};
   pollfd in{STDIN_FILENO, POLLIN, 0};
-  if (::poll(&in, 1, 0) > 0) {
-    const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
-    if (count <= 0) return key::kHangUp;
-    typed_.append(bytes.data(), static_cast<std::size_t>(count));
-  }
+  if (::poll(&in, 1, wait_ms) <= 0) return true;
+  const ssize_t count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+  if (count <= 0) return false;
+  typed_.append(bytes.data(), static_cast<std::size_t>(count));
+  return true;
+}
+
+int Terminal::readKey() {
+  // A sequence may come in two pieces over a network; without its second one it is the key Escape.
+  if (!takeTyped(0) || (typed_ == "\x1b" && !takeTyped(kSequenceMs))) return key::kHangUp;
   if (typed_.empty()) return key::kNone;
   const auto known = std::find_if(kSequences.begin(), kSequences.end(), [&](const KeySequence& s) {
     return typed_.starts_with(s.bytes);
@@ -90,7 +96,6 @@ int Terminal::readKey() {
     return known->key;
   }
   const int first = static_cast<unsigned char>(typed_.front());
-  // A terminal sends a sequence in one piece: an escape that begins none was the key itself.
   const bool other_sequence = first == 0x1b && typed_.size() > 1 && typed_[1] == '[';
   typed_.erase(0, other_sequence ? typed_.size() : 1);
   if (other_sequence) return key::kNone;
@@ -102,7 +107,8 @@ void Terminal::show(const std::vector<ScreenLine>& lines) {
   std::string out = "\x1b[H";
   for (std::size_t i = 0; i < std::min(lines.size(), screen.rows); ++i) {
     std::string text = lines[i].text.substr(0, screen.columns);
-    std::replace_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
     if (i > 0) out += "\r\n";
     if (lines[i].highlighted) {
       text.resize(screen.columns, ' ');

@@ -48,13 +48,16 @@ class Terminal {
   };
   [[nodiscard]] Size size() const;
 
-  /// Next key that was typed; kNone if none was. Never waits.
+  /// Next key that was typed; kNone if none was. Waits 25 ms at most, for the rest of a key.
   [[nodiscard]] int readKey();
 
   /// Shows these lines from the top and nothing else; what does not fit is left out.
   void show(const std::vector<ScreenLine>& lines);
 
  private:
+  /// False if the terminal is gone.
+  bool takeTyped(int wait_ms);
+
   termios before_{};
   std::string typed_;  // Not yet taken keys.
 };

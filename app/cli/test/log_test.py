@@ -193,7 +193,7 @@ def try_record(whole, folder):
 
     # kill -9 in flight: all but the last second is there.
     recorder = Recorder(folder / "killed")
-    fly(flight, 1, until=16.0, publisher=publisher)
+    fly(flight, 4, until=20.0, publisher=publisher)
     recorder.end(signal.SIGKILL)
     (killed,) = (folder / "killed").iterdir()
     run = tautline("log", "check", killed, "--json")

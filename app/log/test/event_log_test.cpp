@@ -184,14 +184,14 @@ TEST_P(Holes, OnlyTouchedEventsAreLostAndAllOfThemAreCounted) {
       auto expected = untouched(log, begin, begin + GetParam());
       // Damage that begins where an event ends: nothing shows that this event is whole; nor do
       // some bytes of the next sync word in front of noise.
-      const auto in_front =
-          std::find_if(log.extents().begin(), log.extents().end(), [&](const Extent& e) {
-            return begin >= e.end && begin - e.end < (noise ? 4U : 1U);
-          });
+      const auto in_front = std::find_if(
+          log.extents().begin(), log.extents().end(),
+          [&](const Extent& e) { return begin >= e.end && begin - e.end < (noise ? 4U : 1U); });
       if (in_front != log.extents().end())
         std::erase(expected, static_cast<std::int64_t>(in_front - log.extents().begin()));
       const ReadBack got = readAll(write("holed.lcm", bytes));
-      ASSERT_EQ(got.numbers, expected) << "hole at " << begin << (noise ? " of noise" : " of zeros");
+      ASSERT_EQ(got.numbers, expected)
+          << "hole at " << begin << (noise ? " of noise" : " of zeros");
       const auto lost = static_cast<std::int64_t>(log.extents().size() - expected.size());
       if (got.at_least) {  // the last event itself is among them
         ASSERT_LE(got.lost, lost);
@@ -209,8 +209,8 @@ TEST(EventLog, ABlockThatIsMissingIsCounted) {
   const SampleLog log(100);
   const Extent first = log.extents()[10];
   const Extent last = log.extents()[19];
-  const ReadBack whole_events =
-      readAll(write("short.lcm", log.bytes().substr(0, first.begin) + log.bytes().substr(last.end)));
+  const ReadBack whole_events = readAll(
+      write("short.lcm", log.bytes().substr(0, first.begin) + log.bytes().substr(last.end)));
   EXPECT_EQ(whole_events.numbers.size(), 90U);
   EXPECT_EQ(whole_events.lost, 10);
   EXPECT_FALSE(whole_events.at_least);

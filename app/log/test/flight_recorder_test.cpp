@@ -86,7 +86,8 @@ class FlightRecorderTest : public ::testing::Test {
       send("STATION_STATE", encoded(m));
       mission_status_t status{};
       status.mission_hash = mission;
-      status.state = static_cast<std::int8_t>(mode == Mode::kAuto ? MissionState::kRunning : MissionState::kCompleted);
+      status.state = static_cast<std::int8_t>(mode == Mode::kAuto ? MissionState::kRunning
+                                                                  : MissionState::kCompleted);
       send("MISSION_STATUS", encoded(status));
       recorder_->tick(now_);
     }
@@ -177,9 +178,9 @@ TEST_F(FlightRecorderTest, AClockThatIsSetBackOverwritesNothing) {
 TEST_F(FlightRecorderTest, ASilentStationIsSaidOnceAndRecordingGoesOn) {
   fly(Mode::kArmed, seconds(2));
   silence(seconds(20));
-  EXPECT_EQ(std::count(said_.begin(), said_.end(),
-                       "the station is silent in flight; recording goes on"),
-            1);
+  EXPECT_EQ(
+      std::count(said_.begin(), said_.end(), "the station is silent in flight; recording goes on"),
+      1);
   EXPECT_FALSE(recorder_->file().empty());
   fly(Mode::kStandby, seconds(4));  // it came back, disarmed
   EXPECT_THAT(said_, Contains("the station is heard again"));
@@ -196,8 +197,8 @@ TEST_F(FlightRecorderTest, ClosingInFlightLeavesAWholeLog) {
 TEST_F(FlightRecorderTest, OldLogsMakeRoomButNeverTheOneBeingWritten) {
   const auto old = [&](const std::string& name, int age_hours) {
     std::ofstream(folder_ / name) << std::string(100'000, 'x');
-    fs::last_write_time(folder_ / name, fs::file_time_type::clock::now() -
-                                            std::chrono::hours(age_hours));
+    fs::last_write_time(folder_ / name,
+                        fs::file_time_type::clock::now() - std::chrono::hours(age_hours));
   };
   old("a.lcm", 3);
   old("b.lcm.00", 2);

@@ -152,6 +152,7 @@ TEST(MessageDecoder, TheProjectsOwnTypes) {
   EXPECT_EQ((*decoded)["valid"], true);
   EXPECT_EQ((*decoded)["position_m"][1], 1.25);
   EXPECT_THAT(decoded->dump(), HasSubstr("\"nis\":null"));
+  EXPECT_EQ(flatten(*info, *decoded).back().value, "nan");
   EXPECT_TRUE(decode(*findMessage(encoded(mission_chunk_t{})), encoded(mission_chunk_t{})));
   EXPECT_GE(messageTable().size(), 14U);
 }
