@@ -5,8 +5,7 @@
 
 #include <filesystem>
 
-#include <lcm/eventlog.h>
-
+#include "app/log/event_log_writer.h"
 #include "app/station/telemetry.h"
 
 namespace tautline::bench {
@@ -14,14 +13,15 @@ namespace tautline::bench {
 class LogSink final : public TelemetrySink {
  public:
   /// Starts `path` anew. @throws InputError if it cannot be written.
-  explicit LogSink(const std::filesystem::path& path);
-  ~LogSink() override;
+  explicit LogSink(const std::filesystem::path& path) : log_(path) {}
 
   bool publish(const char* channel, std::int64_t utime,
-               std::span<const std::uint8_t> bytes) noexcept override;
+               std::span<const std::uint8_t> bytes) noexcept override {
+    return log_.write(channel, utime, bytes);
+  }
 
  private:
-  lcm_eventlog_t* log_{nullptr};
+  EventLogWriter log_;
 };
 
 }  // namespace tautline::bench

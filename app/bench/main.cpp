@@ -140,12 +140,14 @@ ExitCode replayLog(const Options& o) {
     fmt::print("{}\n", nlohmann::json{{"cycles", r.cycles},
                                       {"commands_compared", r.commands_compared},
                                       {"differences", r.differences},
-                                      {"first_difference", r.first_difference}}
+                                      {"first_difference", r.first_difference},
+                                      {"damage", r.damage}}
                            .dump());
   } else {
     fmt::print("{} cycles replayed, {} commands compared, {} differ{}{}\n", r.cycles,
                r.commands_compared, r.differences, r.differences == 0 ? "" : ": first ",
                r.first_difference);
+    if (!r.damage.empty()) fmt::print("the log is {}\n", r.damage);
   }
   return same ? ExitCode::kOk : ExitCode::kFailed;
 }

@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include <lcm/lcm-cpp.hpp>
 #include <tautline/command_t.hpp>
 #include <tautline/mission_chunk_t.hpp>
 #include <tautline/params_t.hpp>
 
+#include "app/log/event_log_reader.h"
+#include "app/log/log_version.h"
 #include "app/station/input_message.h"
-#include "app/station/log_version.h"
 #include "app/station/telemetry.h"
 #include "common/error.h"
 #include "common/toml/config_file.h"
@@ -48,31 +48,34 @@ class CommandCatcher final : public TelemetrySink {
 
 using ChunkKey = std::pair<std::int64_t, std::int64_t>;
 
+/// Whether that program's PARAMS are a station's configuration; a simulator has one, too.
+bool isStation(const tautline::params_t& params) {
+  return params.program == "tautline-station" || params.program == "tautline-bench";
+}
+
 /// What a first pass over the log collects.
 struct Contents {
   StationConfig config;
   std::map<ChunkKey, tautline::mission_chunk_t> chunks;
   std::vector<tautline::station_input_t> inputs;
   std::map<std::int64_t, std::vector<std::uint8_t>> commands;  ///< Payloads by utime.
+  std::string damage;  ///< Of the file, as ReplayResult has it.
 };
 
 Contents readLog(const std::filesystem::path& path) {
-  lcm::LogFile log(path.string(), "r");
-  if (!log.good())
-    throw InputError({.file = path.string(), .problem = "cannot be read as an LCM log"});
+  EventLogReader log(path);
   Contents out;
   std::optional<std::string> config;
   LogVersion version;
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
-    const auto* data = static_cast<const std::uint8_t*>(event->data);
+  while (const auto event = log.next()) {
     const auto decode = [&](auto& message) {
       return version.fits<std::remove_reference_t<decltype(message)>>(*event) &&
-             message.decode(event->data, 0, event->datalen) >= 0;
+             message.decode(event->data.data(), 0, static_cast<int>(event->data.size())) >= 0;
     };
     tautline::params_t params;
     tautline::mission_chunk_t chunk;
     tautline::station_input_t input;
-    if (event->channel == channel::kParams && !config && decode(params)) {
+    if (event->channel == channel::kParams && !config && decode(params) && isStation(params)) {
       config = params.toml;
     } else if (event->channel == channel::kMissionChunk && decode(chunk)) {
       out.chunks[{chunk.session, chunk.sequence}] = chunk;
@@ -80,11 +83,11 @@ Contents readLog(const std::filesystem::path& path) {
       out.inputs.push_back(input);
     } else if (event->channel == channel::kCommand) {
       tautline::command_t command;
-      if (decode(command))
-        out.commands[command.utime] = payloadOf({data, static_cast<std::size_t>(event->datalen)});
+      if (decode(command)) out.commands[command.utime] = payloadOf(event->data);
     }
   }
   version.check(path);
+  out.damage = summary(log.damage());
   if (!config || out.inputs.empty()) {
     throw InputError({.file = path.string(),
                       .problem = "has no PARAMS or no STATION_INPUT messages",
@@ -104,6 +107,7 @@ ReplayResult replay(const std::filesystem::path& path, const Playback& playback)
   Telemetry telemetry(catcher, log.config.run_mode, Duration::zero(), Duration::zero());
 
   ReplayResult result;
+  result.damage = log.damage;
   PlaybackClock clock(playback);
   for (const tautline::station_input_t& message : log.inputs) {
     StepInput in = inputOf(message);

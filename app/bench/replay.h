@@ -18,6 +18,7 @@ struct ReplayResult {
   std::int64_t commands_compared{0};
   std::int64_t differences{0};
   std::string first_difference;  ///< Empty if there is none.
+  std::string damage;            ///< What is missing of the log; a core that missed inputs differs.
 };
 
 /// Replays `log` with the configuration that is in it. @throws InputError for a log that cannot be

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/doctor/check.h"
+#include "lcmtypes/channels.h"
 
 namespace tautline::cli {
 namespace {
@@ -22,7 +24,13 @@ struct Options {
   double rate_hz{100.0};
   double seconds{10.0};
   std::string root{"/"};
+  std::string config;
+  std::string log_folder;
+  std::string lcm_url{kDefaultLcmUrl};
 };
+
+constexpr const char* kInstalledConfig = "/etc/tautline/station.toml";
+constexpr const char* kInstalledLogs = "/var/log/tautline";
 
 nlohmann::json jsonOf(const Check& check, const Finding& f) {
   return {{"check", check.name},
@@ -34,10 +42,10 @@ nlohmann::json jsonOf(const Check& check, const Finding& f) {
 }
 
 void print(const Check& check, const Finding& f) {
-  fmt::print("{:8} {:13} {}\n", nameOf(f.status, kFindingStatusNames), check.name, f.measured);
+  fmt::print("{:8} {:14} {}\n", nameOf(f.status, kFindingStatusNames), check.name, f.measured);
   if (!f.details.empty()) fmt::print("{}", f.details);
-  if (!f.wanted.empty()) fmt::print("{:22} wanted: {}\n", "", f.wanted);
-  if (!f.remedy.empty()) fmt::print("{:22} remedy: {}\n", "", f.remedy);
+  if (!f.wanted.empty()) fmt::print("{:23} wanted: {}\n", "", f.wanted);
+  if (!f.remedy.empty()) fmt::print("{:23} remedy: {}\n", "", f.remedy);
   std::fflush(stdout);
 }
 
@@ -46,6 +54,15 @@ ExitCode run(const Options& options) {
   machine.root = options.root;
   machine.loop_rate_hz = options.rate_hz;
   machine.latency_s = options.seconds;
+  machine.lcm_url = options.lcm_url;
+  machine.log_folder = !options.log_folder.empty()               ? options.log_folder
+                       : std::filesystem::exists(kInstalledLogs) ? kInstalledLogs
+                                                                 : ".";
+  if (!options.config.empty()) {
+    readStationConfig(machine, options.config);
+  } else if (std::filesystem::exists(kInstalledConfig)) {
+    readStationConfig(machine, kInstalledConfig);
+  }
   int problems = 0;
   int advice = 0;
   nlohmann::json findings = nlohmann::json::array();
@@ -75,6 +92,14 @@ void addDoctorCommand(CLI::App& root, ExitCode& result) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = root.add_subcommand(
       "doctor", "What of this machine is not fit for flight, with the commands that mend it");
+  verb->add_option("--config", options->config,
+                   std::string("Station's TOML file; default: ") + kInstalledConfig +
+                       " where it is installed")
+      ->type_name("FILE");
+  verb->add_option("--log-dir", options->log_folder,
+                   std::string("Where logs go; default: ") + kInstalledLogs + ", or here")
+      ->type_name("DIR");
+  verb->add_option("--lcm-url", options->lcm_url, "Where the station is")->capture_default_str();
   verb->add_flag("--rt", options->real_time, "Only what the real-time loop needs");
   verb->add_option("--rate-hz", options->rate_hz, "Rate of the latency check's loop")
       ->check(CLI::Range(10.0, 1000.0))
@@ -87,7 +112,8 @@ void addDoctorCommand(CLI::App& root, ExitCode& result) {
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "One JSON object for machines");
   verb->footer(
-      "Example: tautline doctor --rt\nExit code 1 if there is a problem; advice alone is none.\n"
+      "Example: tautline doctor --config config/station.toml\nExit code 1 if there is a problem; "
+      "advice alone is none.\n"
       "Run it as the user that will fly: rights are that user's.");
   verb->callback([options, &result] { result = run(*options); });
 }

@@ -10,8 +10,10 @@
 #include "app/cli/black_box_command.h"
 #include "app/cli/doctor_command.h"
 #include "app/cli/flight_command.h"
+#include "app/cli/log/log_command.h"
 #include "app/cli/mission_command.h"
 #include "app/cli/report_command.h"
+#include "app/cli/spy/spy_command.h"
 #include "app/version.h"
 #include "common/error.h"
 
@@ -24,6 +26,8 @@ int main(int argc, char** argv) {
   cli::addFlightCommands(app, result);
   cli::addMissionCommand(app, result);
   cli::addReportCommand(app, result);
+  cli::addSpyCommand(app, result);
+  cli::addLogCommand(app, result);
   cli::addBlackBoxCommand(app, result);
   cli::addDoctorCommand(app, result);
   try {

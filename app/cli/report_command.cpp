@@ -52,7 +52,8 @@ void addReportCommand(CLI::App& root, ExitCode& result) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = root.add_subcommand(
       "report", "What happened in a flight: figures and pictures from its LCM log");
-  verb->add_option("log", options->log, "LCM log, as lcm-logger or the bench writes it")
+  verb->add_option("log", options->log,
+                   "LCM log, as `tautline log record`, lcm-logger or the bench writes it")
       ->required()
       ->type_name("LOG");
   verb->add_option("--out", options->folder,

@@ -280,9 +280,8 @@ std::vector<std::string> notesOn(const FlightLog& log, const FlightAnalysis& fli
   if (undecodable > 0)
     notes.push_back(std::to_string(undecodable) +
                     " messages could not be decoded and were left out.");
-  if (log.damaged_places > 0)
-    notes.push_back("The log file is damaged in " + std::to_string(log.damaged_places) +
-                    " places.");
+  if (!log.damage.empty())
+    notes.push_back("The log is " + log.damage + "; `tautline log check` says where.");
   if (log.states.empty())
     notes.emplace_back("The log has no STATION_STATE: run mode and modes are unknown.");
   if (flight.position.empty()) notes.emplace_back("The log has no valid position.");

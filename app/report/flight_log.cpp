@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 
-#include <lcm/lcm-cpp.hpp>
 #include <tautline/command_t.hpp>
 #include <tautline/estimate_t.hpp>
 #include <tautline/event_t.hpp>
@@ -19,7 +18,8 @@
 #include <tautline/tether_state_t.hpp>
 #include <tautline/vehicle_state_t.hpp>
 
-#include "app/station/log_version.h"
+#include "app/log/event_log_reader.h"
+#include "app/log/log_version.h"
 #include "common/error.h"
 #include "common/mission_plan.h"
 #include "lcmtypes/channels.h"
@@ -44,9 +44,9 @@ Enum enumOr(int value, const std::array<EnumName<Enum>, N>& names, Enum otherwis
 
 // The generated decode() trusts the lengths of strings. Checks that `count` of them, and nothing
 // else, follow at `offset`.
-bool stringsFit(const lcm::LogEvent& event, std::size_t offset, int count) {
-  const auto* bytes = static_cast<const unsigned char*>(event.data);
-  const auto size = static_cast<std::size_t>(event.datalen);
+bool stringsFit(const LogEvent& event, std::size_t offset, int count) {
+  const auto bytes = event.data;
+  const std::size_t size = bytes.size();
   for (int i = 0; i < count; ++i) {
     if (offset + 4 > size) return false;
     std::size_t length = 0;
@@ -59,18 +59,16 @@ bool stringsFit(const lcm::LogEvent& event, std::size_t offset, int count) {
 }
 
 // Strings of these types start after the fingerprint and the fields before them.
-bool stringsAreSound(const lcm::LogEvent& event, const event_t*) {
+bool stringsAreSound(const LogEvent& event, const event_t*) {
   return stringsFit(event, 8 + 8 + 1 + 4, 3);
 }
-bool stringsAreSound(const lcm::LogEvent& event, const params_t*) {
-  return stringsFit(event, 8 + 8, 3);
-}
-bool stringsAreSound(const lcm::LogEvent& event, const vehicle_state_t*) {
+bool stringsAreSound(const LogEvent& event, const params_t*) { return stringsFit(event, 8 + 8, 3); }
+bool stringsAreSound(const LogEvent& event, const vehicle_state_t*) {
   constexpr int kEmptyString = 4 + 1;  // length and terminating zero
   static const int strings_at = 8 + vehicle_state_t{}._getEncodedSizeNoHash() - kEmptyString;
   return stringsFit(event, static_cast<std::size_t>(strings_at), 1);
 }
-bool stringsAreSound(const lcm::LogEvent&, const void*) { return true; }
+bool stringsAreSound(const LogEvent&, const void*) { return true; }
 
 struct UtimeSpan {
   std::int64_t first{std::numeric_limits<std::int64_t>::max()};
@@ -114,12 +112,12 @@ class Reader {
   template <class Message>
   void on(const char* name, void (Reader::*add)(const Message&, double t),
           Clock clock = Clock::kStation) {
-    handlers_[name] = [this, name, add, clock](const lcm::LogEvent& event) {
+    handlers_[name] = [this, name, add, clock](const LogEvent& event) {
       ChannelStats& stats = log_.channels[name];
       Message message{};
       if (!version_.fits<Message>(event) ||
           !stringsAreSound(event, static_cast<const Message*>(nullptr)) ||
-          message.decode(event.data, 0, event.datalen) < 0) {
+          message.decode(event.data.data(), 0, static_cast<int>(event.data.size())) < 0) {
         ++stats.undecodable;
         return;
       }
@@ -132,27 +130,13 @@ class Reader {
   }
 
   void readMessages() {
-    lcm::LogFile file(file_.string(), "r");
-    if (!file.good() || std::filesystem::is_directory(file_)) {
-      throw InputError({file_.string(),
-                        0,
-                        {},
-                        "this log cannot be read",
-                        {},
-                        "give the file that lcm-logger wrote"});
-    }
-    for (;;) {
-      const lcm::LogEvent* event = file.readNextEvent();
-      if (event == nullptr) {
-        // LCM stops at a hole; reading on looks for the next message's magic number.
-        if (std::feof(file.getFilePtr()) != 0 || std::ferror(file.getFilePtr()) != 0) break;
-        ++log_.damaged_places;
-        continue;
-      }
+    EventLogReader file(file_);
+    while (const auto event = file.next()) {
       const auto handler = handlers_.find(event->channel);
       if (handler != handlers_.end()) handler->second(*event);
     }
     version_.check(file_);
+    log_.damage = summary(file.damage());
     const UtimeSpan& station = spans_[static_cast<std::size_t>(Clock::kStation)];
     const UtimeSpan& simulator = spans_[static_cast<std::size_t>(Clock::kSimulator)];
     const UtimeSpan& span = station.empty() ? simulator : station;
@@ -162,7 +146,7 @@ class Reader {
                         {},
                         "no message of a Tautline station or simulator in this log",
                         "an LCM log with channels such as STATION_STATE, ESTIMATE or SIM_TRUTH",
-                        "record one with lcm-logger while the station runs"});
+                        "record one with `tautline log record` while the station runs"});
     }
     log_.start_utime = span.first;
     log_.duration = static_cast<double>(span.last - span.first) * 1e-6;
@@ -280,7 +264,7 @@ class Reader {
   std::filesystem::path file_;
   FlightLog log_;
   LogVersion version_;
-  std::map<std::string, std::function<void(const lcm::LogEvent&)>, std::less<>> handlers_;
+  std::map<std::string, std::function<void(const LogEvent&)>, std::less<>> handlers_;
   std::array<UtimeSpan, 3> spans_{};  // By Clock.
 };
 

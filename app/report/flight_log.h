@@ -153,8 +153,7 @@ struct FlightLog {
       duration{};  ///< [s] From the station's (or else the simulator's) first message to its last.
   bool truth_on_other_clock{};  ///< SIM_TRUTH does not overlap the station's time; `truth` was left
                                 ///< empty.
-  int damaged_places{};  ///< Where the file itself had to be resynchronized, or ended in the middle
-                         ///< of a message.
+  std::string damage;  ///< What is missing of the file itself, in one line; empty if it is whole.
   std::map<std::string, ChannelStats> channels;
 
   std::vector<StateSample> states;
@@ -170,9 +169,9 @@ struct FlightLog {
   std::map<std::string, std::string> programs;      ///< Name and version of who published PARAMS.
 };
 
-/// Reads a log written by lcm-logger or by the bench. Messages that do not decode and damaged
-/// places are counted. Throws InputError when the file cannot be read, holds no message of the
-/// station or the simulator, or was recorded by a version with other messages.
+/// Reads a log written by `tautline log record`, lcm-logger or the bench. Messages that do not
+/// decode and damaged places are counted. Throws InputError when the file cannot be read, holds no
+/// message of the station or the simulator, or was recorded by a version with other messages.
 [[nodiscard]] FlightLog readFlightLog(const std::filesystem::path& file);
 
 }  // namespace tautline::report

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <string>
 
-#include <lcm/lcm-cpp.hpp>
 #include <tautline/station_input_t.hpp>
 
+#include "app/log/event_log_reader.h"
+#include "app/log/log_version.h"
 #include "app/station/input_message.h"
-#include "app/station/log_version.h"
 #include "common/error.h"
 #include "common/tether_geometry.h"
 #include "drivers/flight_log_codec.h"
@@ -24,15 +24,14 @@ constexpr double kAtReel = 0.02;       // a contact this near the origin is the 
 constexpr double kLogScale = 0.00406;  // of the machine that wrote the text logs [m per count]
 
 Recording readLcmLog(const std::filesystem::path& file) {
-  lcm::LogFile log(file.string(), "r");
-  if (!log.good()) throw InputError({.file = file.string(), .problem = "cannot be read"});
+  EventLogReader log(file);
   Recording out;
   LogVersion version;
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
+  while (const auto event = log.next()) {
     tautline::station_input_t input;
     if (event->channel != channel::kStationInput ||
         !version.fits<tautline::station_input_t>(*event) ||
-        input.decode(event->data, 0, event->datalen) < 0)
+        input.decode(event->data.data(), 0, static_cast<int>(event->data.size())) < 0)
       continue;
     StepInput in = inputOf(input);
     if (!out.cycles.empty() && in.now <= out.cycles.back().now) continue;

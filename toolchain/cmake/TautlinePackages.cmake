@@ -38,21 +38,22 @@ set(base_lcm "${base}, liblcm1")
 
 tautline_package(station
   PROGRAMS tautline-station
-  DEPENDS "adduser, iproute2, liblcm-bin"
+  DEPENDS "adduser, iproute2, tautline-tools"
   CROSS_DEPENDS "${base_lcm}, libfmt9 (>= 9.1.0)"
-  RECOMMENDS "tautline-tools, psmisc"
+  RECOMMENDS "psmisc"
   SUMMARY "Ground station of a tethered drone: the real-time loop
 The loop that flies: driver, estimate, supervisor, mission, control,
-telemetry over LCM; with systemd services, udev rules and a logger.
+telemetry over LCM; with systemd services and udev rules.
 It comes up disarmed after every start.")
 tautline_package(tools
   PROGRAMS tautline
+  DEPENDS iproute2
   CROSS_DEPENDS "${base_lcm}, libfmt9 (>= 9.1.0)"
-  RECOMMENDS gnuplot-nox
+  RECOMMENDS "gnuplot-nox, psmisc"
   SUMMARY "Ground station of a tethered drone: operator's command line
 Arms, takes off, flies missions and lands; checks and imports mission
-files, reports what a flight's log says, and examines whether a machine is
-fit for flight.")
+files, shows what goes over LCM, records flights, reports what a log says,
+and examines whether a machine is fit for flight.")
 tautline_package(sim
   PROGRAMS tautline-sim
   CROSS_DEPENDS "${base_lcm}"
@@ -76,7 +77,6 @@ add_custom_target(programs DEPENDS ${programs})
 # The station's surroundings.
 install(DIRECTORY toolchain/systemd/ DESTINATION lib/systemd/system COMPONENT station)
 install(FILES toolchain/udev/60-tautline.rules DESTINATION lib/udev/rules.d COMPONENT station)
-install(PROGRAMS "${TAUTLINE_PACKAGING}/log-quota" DESTINATION usr/lib/tautline COMPONENT station)
 install(FILES config/station_fotokite.toml DESTINATION etc/tautline RENAME station.toml COMPONENT station)
 install(FILES config/station_tautline_can.toml config/station_tautline_serial.toml config/station_replay.toml config/tautline.dbc
         DESTINATION usr/share/doc/tautline-station/examples COMPONENT station)
@@ -116,5 +116,3 @@ else()
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 endif()
 include(CPack)
-
-tautline_script_test(log_quota_test toolchain/packaging/test/log_quota_test.sh)

@@ -46,14 +46,13 @@ check "it brought the multicast route" sh -c 'ip route | grep -q "^224.0.0.0/4 d
 check "SCHED_FIFO for the loop, and for nothing else of it" only_the_loop_is_fifo
 check "its memory is locked" memory_is_locked
 check "the logger starts" systemctl start tautline-logger
-check "with the timer of the quota" systemctl --quiet is-active tautline-log-quota.timer
 check "a station that hangs is ended by the watchdog and comes back disarmed" killed_comes_back_disarmed STOP 1
 check "a station that is killed comes back disarmed" killed_comes_back_disarmed KILL 2
 check "it can be armed again" soon tautline arm
 check "it stops by itself when it is told" systemctl stop tautline-station
 check "and that is no failure" test "$(property Result)" = success
 check "the logger stops" systemctl stop tautline-logger
-check "a log was written" sh -c 'find /var/log/tautline -name "*.lcm.*" -size +10k | grep -q .'
+check "a log was written" sh -c 'find /var/log/tautline -name "*.lcm" -size +10k | grep -q .'
 check "no unit failed" sh -c '! systemctl --failed --no-legend | grep tautline'
 journalctl --no-pager --unit 'tautline-*' >&2
 systemctl poweroff

@@ -128,7 +128,7 @@ check "shipped config is right" inside tautline-station --config /etc/tautline/s
 check "simulator's config is right" inside tautline-sim --config /usr/share/tautline/sim.toml --scene /usr/share/tautline/scenes/one_contact.scene.toml --check-config
 check "a shipped mission is right" inside tautline mission check /usr/share/tautline/missions/square.mission.toml
 check "systemd-analyze verify" inside sh -c '
-  out=$(systemd-analyze verify --man=no /lib/systemd/system/tautline-*.service /lib/systemd/system/tautline-*.timer tautline-can@can0.service 2>&1 | grep tautline)
+  out=$(systemd-analyze verify --man=no /lib/systemd/system/tautline-*.service tautline-can@can0.service 2>&1 | grep tautline)
   echo "$out"; [ -z "$out" ]'
 check "udev rules are syntactically right" inside sh -c '
   out=$(udevadm test --action=add /devices/virtual/tty/tty0 2>&1 | grep "60-tautline.rules:[0-9]"); echo "$out"; [ -z "$out" ]'
@@ -157,7 +157,7 @@ check "the service is not enabled any more" inside sh -c '! ls /etc/systemd/syst
 check "install again over kept config" install_all next
 check "purge" inside sh -c 'apt-get purge -y "tautline-*"'
 for path in etc/tautline var/log/tautline usr/bin/tautline-station lib/systemd/system/tautline-station.service \
-  lib/udev/rules.d/60-tautline.rules etc/security/limits.d/tautline.conf usr/share/tautline usr/lib/tautline; do
+  lib/udev/rules.d/60-tautline.rules etc/security/limits.d/tautline.conf usr/share/tautline; do
   check "gone: /$path" absent "$path"
 done
 check "dpkg knows nothing of it" not inside sh -c 'dpkg-query -W "tautline-*" 2>/dev/null | grep -q .'

@@ -6,12 +6,22 @@
 
 #include "app/cli/doctor/latency.h"
 #include "app/cli/doctor/real_time_checks.h"
+#include "app/cli/doctor/station_checks.h"
+#include "app/station/station_config.h"
+#include "common/toml/config_file.h"
 
 namespace tautline::cli {
 
 const std::vector<Check>& allChecks() {
   using enum CheckGroup;
   static const std::vector<Check> checks{
+      {"CONFIG", kStation, checkConfig},
+      {"SERIAL_PORT", kStation, checkSerialPort},
+      {"CAN", kStation, checkCan},
+      {"MULTICAST", kNetwork, checkMulticast},
+      {"STATION", kNetwork, checkStationHeard},
+      {"LOG_DISK", kDisk, checkLogDisk},
+      {"BLACK_BOX_DISK", kDisk, checkBlackBoxDisk},
       {"RT_PRIORITY", kRealTime, checkPriority},
       {"MEMLOCK", kRealTime, checkMemlock},
       {"KERNEL", kRealTime, checkKernel},
@@ -32,6 +42,15 @@ Machine thisMachine() {
   };
   machine.lateness = measureLateness;
   return machine;
+}
+
+void readStationConfig(Machine& machine, const std::filesystem::path& file) {
+  machine.config_file = file;
+  try {
+    machine.config = std::make_shared<const StationConfig>(loadConfig<StationConfig>(file));
+  } catch (const InputError& error) {
+    machine.config_problem = error.what();
+  }
 }
 
 std::string firstLine(const Machine& machine, const std::string& path) {

@@ -8,11 +8,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/fields.h"
 #include "common/time.h"
+
+namespace tautline {
+struct StationConfig;
+}
 
 namespace tautline::cli {
 
@@ -25,10 +31,19 @@ struct Machine {
   std::function<std::vector<Duration>(Duration period, Duration length)> lateness;
   double loop_rate_hz{100.0};  ///< Of the loop that the latency check imitates.
   double latency_s{10.0};      ///< How long it does.
+
+  std::filesystem::path config_file;  ///< Of the station; empty: there is none to look at.
+  std::shared_ptr<const StationConfig> config;  ///< What is in it; nullptr if it cannot be read,
+  std::string config_problem;                   ///< and then the one line that says why.
+  std::string lcm_url;
+  std::filesystem::path log_folder;
 };
 
 /// This machine itself.
 [[nodiscard]] Machine thisMachine();
+
+/// Reads `file` into the machine's config, or notes why it cannot be read.
+void readStationConfig(Machine& machine, const std::filesystem::path& file);
 
 enum class FindingStatus : std::uint8_t {
   kOk,
@@ -49,9 +64,17 @@ struct Finding {
 };
 
 /// Groups of checks that the command line can choose.
-enum class CheckGroup : std::uint8_t { kRealTime };
-inline constexpr std::array<EnumName<CheckGroup>, 1> kCheckGroupNames{
-    {{CheckGroup::kRealTime, "rt"}}};
+enum class CheckGroup : std::uint8_t {
+  kStation,   ///< Its config and its device.
+  kNetwork,   ///< LCM.
+  kDisk,      ///< Room for logs and the black box.
+  kRealTime,  ///< What the loop needs.
+};
+inline constexpr std::array<EnumName<CheckGroup>, 4> kCheckGroupNames{
+    {{CheckGroup::kStation, "station"},
+     {CheckGroup::kNetwork, "network"},
+     {CheckGroup::kDisk, "disk"},
+     {CheckGroup::kRealTime, "rt"}}};
 
 struct Check {
   const char* name;  ///< In capitals, as an arming check would be called.

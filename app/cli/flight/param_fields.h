@@ -52,7 +52,7 @@ class FieldLister {
   }
   template <class Rows>
   void rows(const char* key, Rows& rows, const char* doc) {
-    add(key, std::to_string(rows.size()) + " rows", "", doc);
+    add(key, std::to_string(rows.all().size()) + " rows", "", doc);
   }
   template <class Struct>
   void section(const char* key, Struct& inner) {

@@ -1,4 +1,5 @@
-// Every finding of `tautline doctor`, on a machine made of files.
+// Every finding about real time, on a machine made of files. The others are provoked on the real
+// one: app/cli/test/doctor_test.py.
 
 #include <algorithm>
 #include <chrono>
@@ -13,6 +14,7 @@
 #include "app/cli/doctor/check.h"
 #include "app/cli/doctor/latency.h"
 #include "app/cli/doctor/real_time_checks.h"
+#include "app/cli/doctor/station_checks.h"
 
 namespace tautline::cli {
 namespace {
@@ -81,6 +83,12 @@ class DoctorTest : public ::testing::Test {
   Machine machine_;
 };
 
+std::vector<Check> realTimeChecks() {
+  std::vector<Check> checks = allChecks();
+  std::erase_if(checks, [](const Check& c) { return c.group != CheckGroup::kRealTime; });
+  return checks;
+}
+
 void expectBad(const Finding& f, FindingStatus status, const std::string& measured,
                const std::string& remedy) {
   EXPECT_EQ(f.status, status) << f.measured;
@@ -91,7 +99,7 @@ void expectBad(const Finding& f, FindingStatus status, const std::string& measur
 
 TEST_F(DoctorTest, AGoodMachineHasNoFinding) {
   std::set<std::string> names;
-  for (const Check& check : allChecks()) {
+  for (const Check& check : realTimeChecks()) {
     const Finding f = check.run(machine_);
     EXPECT_EQ(f.status, FindingStatus::kOk) << check.name << ": " << f.measured;
     EXPECT_THAT(f.measured, Not(IsEmpty())) << check.name;
@@ -105,7 +113,7 @@ TEST_F(DoctorTest, AnEmptyMachineIsAnsweredByEveryCheck) {
   fs::remove_all(root_);
   machine_.clock_synchronized = nullptr;
   machine_.lateness = nullptr;
-  for (const Check& check : allChecks()) {
+  for (const Check& check : realTimeChecks()) {
     const Finding f = check.run(machine_);
     EXPECT_EQ(f.status == FindingStatus::kOk, f.remedy.empty()) << check.name;
   }
@@ -238,6 +246,28 @@ TEST(Latency, MeasuresEachCycleAndNeverWakesEarly) {
   const auto lateness = measureLateness(milliseconds(1), milliseconds(50));
   EXPECT_EQ(lateness.size(), 50U);
   for (const Duration late : lateness) EXPECT_GE(late, Duration::zero());
+}
+
+/// As ip prints a controller: iproute2's own keys, those that matter.
+std::string linkJson(const std::string& state, int bitrate) {
+  return R"([{"ifindex":3,"ifname":"can0","flags":["NOARP","UP","LOWER_UP","ECHO"],"mtu":16,)"
+         R"("operstate":"UP","link_type":"can","linkinfo":{"info_kind":"can","info_data":{"state":")" +
+         state + R"(","berr_counter":{"tx":0,"rx":0},"restart_ms":100,"bittiming":{"bitrate":)" +
+         std::to_string(bitrate) + R"(,"sample_point":"0.875"},"clock":8000000}}}])";
+}
+
+TEST(DoctorCan, ControllersAreJudgedByStateAndBitRate) {
+  const auto judge = [](const std::string& json) { return judgeCanLink(json, "can0", 500'000); };
+  EXPECT_EQ(judge(linkJson("ERROR-ACTIVE", 500'000)).status, FindingStatus::kOk);
+  expectBad(judge(linkJson("BUS-OFF", 500'000)), FindingStatus::kProblem, "BUS-OFF",
+            "sudo ip link set can0 down && sudo ip link set can0 up type can bitrate 500000");
+  expectBad(judge(linkJson("ERROR-ACTIVE", 250'000)), FindingStatus::kProblem, "250000 bit/s",
+            "bitrate 500000");
+  expectBad(judge(linkJson("ERROR-PASSIVE", 500'000)), FindingStatus::kAdvice, "ERROR-PASSIVE",
+            "ip -details -statistics link show can0");
+  expectBad(judge(linkJson("ERROR-ACTIVE", 0)), FindingStatus::kAdvice, "bit rate unknown",
+            "bitrate 500000");
+  expectBad(judge(""), FindingStatus::kAdvice, "bit rate unknown", "bitrate 500000");
 }
 
 }  // namespace

@@ -12,8 +12,7 @@
 #include <map>
 #include <string>
 
-#include <lcm/lcm-cpp.hpp>
-
+#include "app/log/event_log_reader.h"
 #include "common/error.h"
 
 namespace tautline {
@@ -22,13 +21,13 @@ class LogVersion {
  public:
   /// To be asked before a message of the type `Message` is decoded. False: it is of another layout.
   template <class Message>
-  [[nodiscard]] bool fits(const lcm::LogEvent& event) {
+  [[nodiscard]] bool fits(const LogEvent& event) {
     std::uint64_t fingerprint = 0;
-    if (event.datalen < static_cast<std::int32_t>(sizeof(fingerprint))) return true;  // only cut
+    if (event.data.size() < sizeof(fingerprint)) return true;  // only cut
     for (std::size_t i = 0; i < sizeof(fingerprint); ++i)
-      fingerprint = fingerprint << 8U | static_cast<const std::uint8_t*>(event.data)[i];
+      fingerprint = fingerprint << 8U | event.data[i];
     const auto ours = static_cast<std::uint64_t>(Message::getHash());
-    Channel& channel = channels_[event.channel];
+    Channel& channel = channels_[std::string(event.channel)];
     if (fingerprint == ours)
       channel.understood = true;
     else
