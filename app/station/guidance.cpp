@@ -188,8 +188,7 @@ void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcep
   const bool fresh = in.sensors->angles.valid && !in.conditions.has(Condition::kAnglesStale);
   const RateCommand rates = descent_.update(in.dt, config_.descent_speed_mps, limits_,
                                             fresh ? angles.altitude : std::nullopt);
-  if (in.vehicle != VehiclePhase::kLanding && descent_.onGround())
-    landing_ = Landing::kStopMotors;
+  if (in.vehicle != VehiclePhase::kLanding && descent_.onGround()) landing_ = Landing::kStopMotors;
   if (landing_ == Landing::kStopMotors) {
     command.action = paced(VehicleAction::kMotorStop, in.now);
     return;
@@ -226,8 +225,8 @@ bool Guidance::goingBack() const noexcept {
   return back && under_way_;
 }
 
-/// Where it is flown to is remembered, and forgotten as it is flown back. A take-off is one straight
-/// piece up to where the way home ends.
+/// Where it is flown to is remembered, and forgotten as it is flown back. A take-off is one
+/// straight piece up to where the way home ends.
 void Guidance::recordFlight(const GuidanceInput& in) noexcept {
   constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
                                         Condition::kTetherBroken};

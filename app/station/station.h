@@ -23,8 +23,8 @@
 #include "control/command_gate.h"
 #include "control/controller.h"
 #include "control/reel_dead_zone.h"
-#include "supervision/supervisor.h"
 #include "estimation/localizer.h"
+#include "supervision/supervisor.h"
 
 namespace tautline {
 

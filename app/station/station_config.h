@@ -19,13 +19,13 @@
 #include "control/control_config.h"
 #include "control/motion_executor.h"
 #include "control/reel_dead_zone.h"
-#include "supervision/supervisor.h"
 #include "control/vehicle_limits.h"
 #include "drivers/can_socket.h"
 #include "drivers/fotokite_device.h"
 #include "drivers/serial_port.h"
 #include "drivers/tautline_device.h"
 #include "estimation/localizer.h"
+#include "supervision/supervisor.h"
 
 namespace tautline {
 
