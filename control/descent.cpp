@@ -7,10 +7,10 @@
 namespace tautline {
 namespace {
 
-constexpr double kBelowGround = 0.3;        // [m] error of the last place and of the reckoning
-constexpr double kGroundAltitude = 0.3;     // [m] no higher, by barometer: on the ground
-constexpr double kSmoothing = 1.0;          // [s] of the barometer, whose noise is decimetres
-constexpr double kSmallestDescent = 0.02;   // [m]
+constexpr double kBelowGround = 0.3;       // [m] error of the last place and of the reckoning
+constexpr double kGroundAltitude = 0.3;    // [m] no higher, by barometer: on the ground
+constexpr double kSmoothing = 1.0;         // [s] of the barometer, whose noise is decimetres
+constexpr double kSmallestDescent = 0.02;  // [m]
 constexpr Duration kNoLowerFor = std::chrono::seconds(3);
 
 }  // namespace

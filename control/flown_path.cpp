@@ -116,8 +116,8 @@ void FlownPath::forgetLoop(const Eigen::Vector3d& p_WD) noexcept {
   if (first) cutTo(first_piece, *first);
 }
 
-/// A contact is made, and comes off, where the drone is on the line from the anchor below it through
-/// it: the tether itself has lain on the straight way from the one place to the other.
+/// A contact is made, and comes off, where the drone is on the line from the anchor below it
+/// through it: the tether itself has lain on the straight way from the one place to the other.
 void FlownPath::forgetContact(int bend_before) noexcept {
   int off = bend_before;
   while (off != 0 && bend(off).below != bend_) off = bend(off).below;
@@ -148,8 +148,7 @@ void FlownPath::thin(double tolerance) noexcept {
     Point& here = points_[static_cast<std::size_t>(i)];
     if (i + 1 < count_) {
       Point& next = points_[static_cast<std::size_t>(i + 1)];
-      const double off =
-          projectOnSegment(here.p_WD, point(kept - 1), next.p_WD).cross_track;
+      const double off = projectOnSegment(here.p_WD, point(kept - 1), next.p_WD).cross_track;
       const double error = std::max(here.error, next.error) + off;
       if (here.bend == next.bend && error <= tolerance) {
         next.error = error;

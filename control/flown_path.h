@@ -26,8 +26,8 @@ class FlownPath {
   static constexpr double kSamePlace = 0.2;   ///< Closer than this is where it has been before [m].
   static constexpr double kLeastLoop = 0.2;   ///< A way there that is longer than straight by less
                                               ///< than this is no loop [m].
-  static constexpr double kOnTether = 0.3;    ///< Closer to the tether's line than this a contact is
-                                              ///< made or comes off [m].
+  static constexpr double kOnTether = 0.3;  ///< Closer to the tether's line than this a contact is
+                                            ///< made or comes off [m].
 
   /// No way home is known.
   void clear() noexcept { count_ = 0; }

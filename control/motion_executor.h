@@ -150,9 +150,9 @@ class MotionExecutor {
   /// point is not finite.
   bool goTo(const PointTarget& target, const Estimate& estimate) noexcept;
 
-  /// Goes back along the flown path, `distance` [m] or all the way, at `speed` [m/s]. While a leg is
-  /// flown the path may be cut after the leg's end (status().waypoint), not before it. False, and
-  /// nothing changed, if there is no path or no usable estimate.
+  /// Goes back along the flown path, `distance` [m] or all the way, at `speed` [m/s]. While a leg
+  /// is flown the path may be cut after the leg's end (status().waypoint), not before it. False,
+  /// and nothing changed, if there is no path or no usable estimate.
   bool goBack(const FlownPath& path, double distance, double speed,
               const Estimate& estimate) noexcept;
 

@@ -52,8 +52,8 @@ class FlownPathTest : public ::testing::Test {
     for (const Eigen::Vector3d& p : flown_) {
       double least = 1e9;
       for (int i = 1; i < path_.count(); ++i)
-        least = std::min(least,
-                         projectOnSegment(p, path_.point(i - 1), path_.point(i)).cross_track);
+        least =
+            std::min(least, projectOnSegment(p, path_.point(i - 1), path_.point(i)).cross_track);
       worst = std::max(worst, least);
     }
     return worst;
@@ -136,15 +136,15 @@ TEST_F(FlownPathTest, ALoopIsForgottenOnlyOnTheSameStackAndWithAKnownTether) {
     path_.begin({0, 1, 0});
     here_ = {0, 1, 0};
     tether_known_ = known;
-    for (const Eigen::Vector3d& p : {Eigen::Vector3d(2, 1, 0), Eigen::Vector3d(4, 1, 0),
-                                     Eigen::Vector3d(4, 1, 2), Eigen::Vector3d(2, 1, 2),
-                                     Eigen::Vector3d(2, 1, 0.05)})
+    for (const Eigen::Vector3d& p :
+         {Eigen::Vector3d(2, 1, 0), Eigen::Vector3d(4, 1, 0), Eigen::Vector3d(4, 1, 2),
+          Eigen::Vector3d(2, 1, 2), Eigen::Vector3d(2, 1, -0.3)})
       flyTo(p);
     const Route back = Route::back(path_, here_, 1e9, 0.3);
     if (known) {
       EXPECT_LE(back.count(), 3);
     } else {
-      EXPECT_GE(back.count(), 4);
+      EXPECT_GE(back.count(), 5);
     }
   }
 }
@@ -156,7 +156,7 @@ TEST_F(FlownPathTest, AContactMadeAndComeOffOnTheTethersLineIsForgotten) {
   flyTo({3, 1.9, 1.5});
   flyTo({2.5, 2.5, 2.6});
   comeOff(0);
-  EXPECT_EQ(idsBack(), (std::vector<int>{0}) ) << "made and undone";
+  EXPECT_EQ(idsBack(), (std::vector<int>{0})) << "made and undone";
 }
 
 TEST_F(FlownPathTest, IsCutWhileItIsFlownBack) {
@@ -176,7 +176,7 @@ TEST_F(FlownPathTest, ARouteBackEndsAfterItsDistance) {
   flyTo({3, 1, 0});
   flyTo({3, 1, 3});
   const Route back = Route::back(path_, here_, 4.0, 0.3);
-  EXPECT_TRUE(back.leg(back.count() - 1).p_WD.isApprox(Eigen::Vector3d(2, 1, 0), 0.05));
+  EXPECT_LT((back.leg(back.count() - 1).p_WD - Eigen::Vector3d(2, 1, 0)).norm(), 0.2);
   const Route home = Route::back(path_, here_, 100.0, 0.3);
   EXPECT_EQ(home.leg(home.count() - 1).p_WD, Eigen::Vector3d(0, 1, 0));
   EXPECT_EQ(home.leg(0).speed, 0.3);

@@ -50,9 +50,7 @@ class BenchFlight {
     if (each_cycle) each_cycle();
     return out.ack && out.ack->result == AckResult::kAccepted;
   }
-  bool ask(Request request) {
-    return step(OperatorCommand{kSession, ++sequence_, request, hash_});
-  }
+  bool ask(Request request) { return step(OperatorCommand{kSession, ++sequence_, request, hash_}); }
   void upload(const MissionPlan& plan) {
     hash_ = plan.hash;
     forEachChunk(plan, [&](tautline::mission_chunk_t& chunk) {

@@ -31,13 +31,13 @@ struct Moment {
 /// config/missions/two_contacts: contact 1 is made when waypoint 3 becomes the target, contact 2
 /// with waypoint 5; they come off with 8 and 10.
 const std::vector<Moment> kMoments{
-    {1, seconds(1)},       {2, seconds(2)},        {3, milliseconds(20)}, {3, seconds(1)},
-    {4, seconds(1)},       {5, milliseconds(20)},  {5, seconds(1)},       {6, milliseconds(500)},
-    {7, seconds(1)},       {8, milliseconds(20)},  {9, milliseconds(20)}, {10, milliseconds(20)},
-    {10, seconds(2)},      {11, milliseconds(500)}};
+    {1, seconds(1)},  {2, seconds(2)},        {3, milliseconds(20)}, {3, seconds(1)},
+    {4, seconds(1)},  {5, milliseconds(20)},  {5, seconds(1)},       {6, milliseconds(500)},
+    {7, seconds(1)},  {8, milliseconds(20)},  {9, milliseconds(20)}, {10, milliseconds(20)},
+    {10, seconds(2)}, {11, milliseconds(500)}};
 
-LockstepConfig gusty(std::uint64_t seed, LockstepConfig (*config)(const std::string&,
-                                                                  std::uint64_t)) {
+LockstepConfig gusty(std::uint64_t seed,
+                     LockstepConfig (*config)(const std::string&, std::uint64_t)) {
   LockstepConfig out = config("two_contacts", seed);
   out.sim.wind.gust = 0.2;
   return out;
@@ -276,9 +276,8 @@ TEST(Descend, ComesDownInPlaceWithASensorCut) {
       EXPECT_TRUE(flight.landed(seconds(60))) << nameOf(flight.mode(), kModeNames);
       const Eigen::Vector3d moved = flight.truth().p_WD - before;
       std::printf("DESCEND, %s, %s cut: from %.2f m, %.2f m aside\n",
-                  config == busConfig ? "bus" : "Fotokite",
-                  cut == Cut::kAngles ? "angles" : "reel", -moved.y(),
-                  std::hypot(moved.x(), moved.z()));
+                  config == busConfig ? "bus" : "Fotokite", cut == Cut::kAngles ? "angles" : "reel",
+                  -moved.y(), std::hypot(moved.x(), moved.z()));
     }
   }
 }
@@ -290,8 +289,7 @@ TEST(WaysBack, DoNotTouchTheHeap) {
   flight.each_cycle = {};
   flight.flyTo({6, seconds(1)});
   const auto idle = [&](Duration d) {
-    for (const Time end = flight.bench->now() + d; flight.bench->now() < end;)
-      flight.bench->step();
+    for (const Time end = flight.bench->now() + d; flight.bench->now() < end;) flight.bench->step();
   };
   const testing::MallocGuard guard;
   for (const Request request : {Request::kBackUp, Request::kReturn, Request::kLand}) {
