@@ -66,7 +66,10 @@ ConditionSet ConditionMonitor::update(const MonitorInput& in) noexcept {
   findings_.report(C::kOverruns, in.missed_in_a_row >= config_.overruns_in_a_row,
                    in.missed_in_a_row, config_.overruns_in_a_row);
   findings_.report(C::kConfigBad, config_bad_);
-  return filter_.update(in.now, findings_.raised);
+  const ConditionSet counting = filter_.update(in.now, findings_.raised);
+  // On the ground there is time: arming waits for what is the case now, too.
+  if (in.mode != Mode::kStandby) return counting;
+  return counting | (findings_.raised & conditionsOf(ConditionKind::kForbidsArming));
 }
 
 void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
@@ -87,7 +90,10 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
 
   const SensorFrame& f = *in.sensors;
   SampledLength length;
-  if (isGood(f.reel, reel)) length = {f.reel.sequence, f.reel.time, f.reel.value.length};
+  if (isGood(f.reel, reel)) {
+    L_total_ = f.reel.value.length;
+    length = {f.reel.sequence, f.reel.time, L_total_};
+  }
   SampledAngles direction;
   if (isGood(f.angles, angles))
     direction = {f.angles.sequence, f.angles.time, f.angles.value.theta, f.angles.value.phi};
@@ -95,7 +101,7 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
 
   const bool parked = !isIn(in.mode, kFlyingModes) && f.vehicle.value.phase == VehiclePhase::kIdle;
   std::optional<double> L_total, phi;
-  if (parked && reel.ok()) L_total = f.reel.value.length;
+  if (parked && reel.ok()) L_total = L_total_;
   if (parked && angles.ok()) phi = f.angles.value.phi;
   parked_.update(L_total, phi, findings_);
 }
@@ -108,7 +114,7 @@ void ConditionMonitor::watchTether(const MonitorInput& in) noexcept {
   lean_.update(f.attitude, e.theta_tangent, e.phi);
   TetherWatchInput t;
   t.flying = isFlying(f) && e.usable();
-  t.L_total = f.reel.value.length;
+  t.L_total = L_total_;
   t.L_max = config_.limits.tether_length_m;
   t.L_free = e.L_free;
   t.theta = e.theta_tangent;
@@ -129,7 +135,8 @@ void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
   const SensorFrame& f = *in.sensors;
   const Estimate& e = *in.estimate;
   const bool flying = isFlying(f);
-  if (e.usable()) fence_.update({flying, f.reel.value.length, e.p_WD}, findings_);
+  const bool angles_good = isGood(f.angles, (*in.health)[SensorStream::kAngles]);
+  if (e.usable()) fence_.update({flying, L_total_, e.p_WD}, findings_);
 
   ContactWatchInput c;
   c.flying = flying;
@@ -137,14 +144,17 @@ void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
   c.p_WA = in.anchor->p_WA;
   c.p_WD = e.p_WD;
   c.nis = e.nis;
-  if (f.angles.valid && f.angles.value.altitude) {
+  if (angles_good && f.angles.value.altitude) {
     const double height = e.p_WD.y() - config_.guidance.home_position_m.y();
     c.height_residual = *f.angles.value.altitude - height;
   }
   contact_.update(in.now, c, findings_);
 
   std::optional<Eigen::Vector3d> sensed;
-  if (flying && f.angles.valid) {
+  // With another anchor the sensed position steps: not the drone.
+  const bool same_anchor = in.anchor->p_WA == p_WA_;
+  p_WA_ = in.anchor->p_WA;
+  if (flying && angles_good && same_anchor) {
     const TetherAngles& angles = f.angles.value;
     sensed = in.anchor->p_WA + toCartesian({e.L_free, angles.theta, angles.phi});
   }

@@ -30,6 +30,8 @@ void ContactWatch::update(Time now, const ContactWatchInput& in, Findings& out) 
   if (in.height_residual) {
     height_residual_ +=
         (1.0 - std::exp(-dt / config_.height_time_s)) * (*in.height_residual - height_residual_);
+  } else {
+    height_residual_ = 0.0;
   }
   const auto lasts = [&](Time since, double seconds) { return toSeconds(now - since) > seconds; };
   const double height = std::abs(height_residual_) / config_.height_residual_m;

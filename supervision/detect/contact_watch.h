@@ -18,8 +18,8 @@
 namespace tautline {
 
 struct ContactWatchConfig {
-  double through_obstacle_m{0.25};
-  double through_time_s{0.5};
+  double through_obstacle_m{0.3};
+  double through_time_s{2.0};
   double height_residual_m{0.6};
   double height_time_s{3.0};
   double nis{6.0};

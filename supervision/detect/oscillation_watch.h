@@ -19,7 +19,7 @@ namespace tautline {
 struct OscillationConfig {
   double window_s{4.0};
   double high_pass_s{0.6};
-  double rms_m{0.1};
+  double rms_m{0.12};
   int crossings{3};
   double swing_m{0.05};
 

@@ -19,7 +19,7 @@ struct TetherWatchConfig {
   double slack_excess_m{0.1};
   double slack_fraction{0.03};
   double reel_margin_m{0.1};
-  double snag_tension_n{2.5};
+  double snag_tension_n{3.0};
   double snag_motion_m{0.3};
   double snag_fraction{0.3};
   double snag_window_s{2.0};

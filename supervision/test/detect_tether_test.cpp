@@ -108,7 +108,7 @@ TEST(TetherWatch, CommandedNotMovingAndPullingIsASnag) {
   t.in.length_rate = -0.3;
   EXPECT_FALSE(t.run(3.0, C::kTetherSnagged)) << "it follows";
   EXPECT_FALSE(t.run(1.0, C::kTetherSnagged, 0.0)) << "it does not pull";
-  t.in.T_lean = 3.0;
+  t.in.T_lean = 3.2;
   EXPECT_TRUE(t.run(2.0, C::kTetherSnagged, 0.0));
   t.in.length_rate = 0.0;
   EXPECT_TRUE(t.run(kDt, C::kTetherSnagged, 0.0));
@@ -118,7 +118,7 @@ TEST(TetherWatch, CommandedNotMovingAndPullingIsASnag) {
 
 TEST(TetherWatch, AHardPullThatFollowsIsNoSnag) {
   Tether t;
-  t.in.T_lean = 3.0;
+  t.in.T_lean = 3.2;
   t.in.elevation_rate = 0.1;
   EXPECT_FALSE(t.run(4.0, C::kTetherSnagged));
 }
@@ -250,8 +250,8 @@ TEST(ContactWatch, EachWitnessSpeaks) {
   };
   const Case cases[] = {
       {"calm", calm, 20.0, false},
-      {"behind a pillar of the map", with([&](auto& in) { in.p_WD = behind; }), 0.6, true},
-      {"behind it for a moment", with([&](auto& in) { in.p_WD = behind; }), 0.4, false},
+      {"behind a pillar of the map", with([&](auto& in) { in.p_WD = behind; }), 2.2, true},
+      {"behind it for a moment", with([&](auto& in) { in.p_WD = behind; }), 1.8, false},
       {"innovations", with([](auto& in) { in.nis = 8.0; }), 1.1, true},
       {"higher than it can be", with([](auto& in) { in.height_residual = -1.5; }), 3.0, true},
       {"a barometer's drift", with([](auto& in) { in.height_residual = 0.4; }), 30.0, false},
