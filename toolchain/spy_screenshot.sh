@@ -25,10 +25,15 @@ export DISPLAY
 "$bin/tautline" spy --gui >"$work/spy.txt" 2>&1 & pids+=($!)
 window=$(timeout 60 xdotool search --sync --onlyvisible --name '^LCM Spy' | head -n 1) || fail "no window of lcm-spy"
 lcm-logplayer "$work/flight.lcm" >"$work/player.txt" 2>&1 & pids+=($!)
-sleep 6
-# The fields of a channel open with a double click on its row; the window gets a place beside the list.
-xdotool mousemove --window "$window" 60 60 click --repeat 2 --delay 100 1
-fields=$(timeout 20 xdotool search --sync --onlyvisible --name '^(COMMAND|COMMAND_ACK|ESTIMATE|EVENT)$' | head -n 1) || fail "no window with fields"
+# The fields of a channel open with a double click on its row, once that is there; the window gets a place beside the list.
+fields=
+for _ in $(seq 15); do
+  sleep 2
+  xdotool mousemove --window "$window" 60 60 click --repeat 2 --delay 100 1
+  fields=$(xdotool search --onlyvisible --name '^(COMMAND|COMMAND_ACK|ESTIMATE|EVENT)$' | head -n 1) || true
+  [[ -z $fields ]] || break
+done
+[[ -n $fields ]] || fail "no window with fields"
 xdotool windowmove "$fields" 820 0
 sleep 2
 import -window root "$picture"
