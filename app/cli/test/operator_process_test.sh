@@ -69,7 +69,7 @@ check "it can be taken" exits 0 taken as anna lease take
 check "all see who has it" exits 0 'held by anna' as bert lease show
 check "another is refused, with the holder's name" exits 3 'held by anna' as bert lease take
 check "nor may he arm" exits 3 'held by anna.*--force' as bert arm
-check "anybody may stop: not refused for the lease" exits 3 'not possible in mode STANDBY' as bert hold
+check "anybody may hold: not refused for the lease" exits 3 'because of NOT_LANDED' as bert hold
 check "on request it is taken over" exits 0 taken as bert lease take --force
 check "now the first is refused" exits 3 'held by bert' as anna arm
 check "and cannot give back what is not hers" exits 3 'held by bert' as anna lease release

@@ -5,12 +5,15 @@
 /// kind is put before the bytes and they are filled up to its size, so that random bytes get past
 /// the decoder; with change 2 the head is made one that the screen lets pass.
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "app/station/operator_inbox.h"
