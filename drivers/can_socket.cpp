@@ -30,6 +30,7 @@ constexpr Duration kBusErrorShown = std::chrono::seconds(1);
 /// Everything but lost arbitration, which is how a healthy bus works.
 constexpr can_err_mask_t kErrorClasses =
     CAN_ERR_MASK & ~static_cast<can_err_mask_t>(CAN_ERR_LOSTARB);
+constexpr int kForeignBuffer = 4096;  // about ten frames, with what the kernel keeps of each
 /// An identifier of 11 bits in a frame that is neither extended nor a request.
 constexpr canid_t kWholeId = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG;
 
@@ -189,7 +190,7 @@ bool CanSocket::setForeignOptions(int fd) const noexcept {
   return setOption(fd, SOL_CAN_RAW, CAN_RAW_JOIN_FILTERS, 1) &&
          setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), size) == 0 &&
          setOption(fd, SOL_SOCKET, SO_RXQ_OVFL, 1) &&
-         setOption(fd, SOL_SOCKET, SO_RCVBUF, 1);  // the kernel makes its least of it
+         setOption(fd, SOL_SOCKET, SO_RCVBUF, kForeignBuffer);
 }
 
 CanStatus CanSocket::tryOpen() noexcept {
