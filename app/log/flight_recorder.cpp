@@ -195,6 +195,7 @@ void FlightRecorder::close() {
   if (!log_) return;
   log_->sync();
   say_(fmt::format("closed {}: {} events, {} lost", file_.string(), log_->written(), log_->lost()));
+  lost_before_ += log_->lost();
   log_.reset();
   file_.clear();
   standby_since_.reset();

@@ -50,6 +50,12 @@ class FlightRecorder {
 
   /// The file that is being written; empty if none.
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+  /// The last write failed for want of room.
+  [[nodiscard]] bool diskFull() const noexcept { return disk_full_; }
+  /// Events that could not be written, since start.
+  [[nodiscard]] std::int64_t eventsLost() const noexcept {
+    return lost_before_ + (log_ ? log_->lost() : 0);
+  }
 
  private:
   struct Message {
@@ -79,6 +85,7 @@ class FlightRecorder {
       lasting_;  // sent rarely, and no log can do without: by what it is of
 
   std::unique_ptr<EventLogWriter> log_;
+  std::int64_t lost_before_{0};  // in the files before
   std::filesystem::path file_;
   std::string start_time_;
   std::string run_mode_;

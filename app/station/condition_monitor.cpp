@@ -52,6 +52,7 @@ ConditionMonitor::ConditionMonitor(const CoreConfig& config)
       config_bad_(isUnflyable(config)) {}
 
 ConditionSet ConditionMonitor::update(const MonitorInput& in) noexcept {
+  if (!first_) first_ = in.now;
   findings_ = {};
   findings_.raised = in.facts;
   watchSensors(in);
@@ -76,8 +77,9 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
   const SensorHealth& health = *in.health;
   const auto stale = [&](Condition c, SensorStream stream) {
     const StreamHealth& s = health[stream];
-    findings_.report(c, s.has(SensorFault::kMissing) || s.has(SensorFault::kStale), s.age,
-                     s.stale_after);
+    const bool missing = s.has(SensorFault::kMissing);
+    findings_.report(c, missing || s.has(SensorFault::kStale),
+                     missing ? toSeconds(in.now - *first_) : s.age, s.stale_after);
   };
   stale(C::kReelStale, SensorStream::kReel);
   stale(C::kAnglesStale, SensorStream::kAngles);

@@ -60,6 +60,7 @@ class ConditionMonitor {
   HostWatch host_;
   ParkedCheck parked_;
   bool config_bad_;
+  std::optional<Time> first_;                      ///< Cycle.
   double L_total_{0.0};                            ///< Last good reading [m].
   Eigen::Vector3d p_WA_{Eigen::Vector3d::Zero()};  ///< Anchor of the last cycle.
   Findings findings_;

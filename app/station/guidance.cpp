@@ -22,10 +22,7 @@ Guidance::Guidance(const GuidanceConfig& config, const ExecutorConfig& executor,
     : config_(config), limits_(limits), executor_(executor, pole, limits, contacts_) {}
 
 GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
-  if (in.entered) {
-    gave_up_ = in.mode == Mode::kFailsafe && routeFailed();
-    enter(in);
-  }
+  if (in.entered) enter(in);
   watchVehicle(in);
 
   GuidanceOutput out;
@@ -274,7 +271,8 @@ ConditionSet Guidance::conditions() const noexcept {
   // A take-off that never left the ground ends there too.
   set.set(Condition::kTouchdown, stands && (has_flown_ || mode_ == Mode::kLand));
   set.set(Condition::kMissionDone, mode_ == Mode::kAuto && completed);
-  set.set(Condition::kMissionFailed, gave_up_ || routeFailed() || (back && !path_.known()));
+  set.set(Condition::kMissionFailed, routeFailed() || (back && !path_.known()));
+  set.set(Condition::kNoWayBack, isIn(mode_, kFlyingModes) && !path_.known());
   return set;
 }
 

@@ -92,7 +92,6 @@ class Guidance {
   ExecutorStatus mission_;
   Mode mode_{Mode::kStandby};
   bool under_way_{false};    ///< The mode's route has been started.
-  bool gave_up_{false};      ///< The mode began because the route before it failed.
   bool has_flown_{false};    ///< Since arming.
   int grounded_samples_{0};  ///< Vehicle status samples in a row that say that it stands.
   std::uint32_t vehicle_sequence_{0};

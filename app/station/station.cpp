@@ -92,8 +92,7 @@ const StepOutput& Station::step(const StepInput& in) noexcept {
 }
 
 ConditionSet Station::assess(const StepInput& in) noexcept {
-  ConditionSet facts =
-      guidance_.conditions() | dialogue_.conditions(in.now, supervisor_.mode());
+  ConditionSet facts = guidance_.conditions() | dialogue_.conditions(in.now, supervisor_.mode());
   const MissionPlan* waiting = missions_.loaded();
   facts.set(Condition::kMissionLoaded, waiting != nullptr);
   facts.set(Condition::kTetherElsewhere,
@@ -154,8 +153,8 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
 }
 
 /// The supervisor's last word: no rates without fresh tether sensors, link and localization, but to
-/// come down without them; none on the ground; no way outwards at the end of the tether, or where it
-/// pulls too hard or hangs.
+/// come down without them; none on the ground; no way outwards at the end of the tether, or where
+/// it pulls too hard or hangs.
 VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
   constexpr ConditionSet kUnheard{Condition::kLinkLost, Condition::kVehicleStale};
   constexpr ConditionSet kBlind =

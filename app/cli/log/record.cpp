@@ -1,5 +1,7 @@
 // `tautline log record`: one log for each arming, in a folder with a quota.
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -10,6 +12,7 @@
 #include <CLI/Validators.hpp>
 #include <fmt/format.h>
 #include <lcm/lcm-cpp.hpp>
+#include <tautline/log_status_t.hpp>
 
 #include "app/cli/log/log_command.h"
 #include "app/cli/termination.h"
@@ -28,6 +31,7 @@ struct Options {
 };
 
 constexpr int kPollMs = 100;
+constexpr Duration kStatusPeriod = std::chrono::seconds(1);
 // A disk may hold up a sync for seconds; until then the messages wait in LCM's queue.
 constexpr int kQueueCapacity = 100'000;
 
@@ -44,6 +48,28 @@ class Subscriber {
  private:
   FlightRecorder& recorder_;
 };
+
+/// What the station arms by.
+tautline::log_status_t statusOf(const FlightRecorder& recorder, const std::string& folder) {
+  constexpr std::int64_t kRoomForAFlight = 200'000'000;
+  tautline::log_status_t m{};
+  m.utime = std::chrono::duration_cast<std::chrono::microseconds>(
+                std::chrono::system_clock::now().time_since_epoch())
+                .count();
+  m.recording = recorder.diskFull() ? 0 : 1;
+  const std::string file = recorder.file().string();
+  std::copy_n(file.begin(), std::min(file.size(), sizeof m.file - 1), m.file);
+  std::error_code unknown;
+  if (!file.empty()) {
+    const auto size = std::filesystem::file_size(file, unknown);
+    m.bytes = unknown ? 0 : static_cast<std::int64_t>(size);
+  }
+  const auto space = std::filesystem::space(folder, unknown);
+  m.disk_free_bytes = unknown ? 0 : static_cast<std::int64_t>(space.available);
+  m.disk_limit_bytes = kRoomForAFlight;
+  m.events_lost = recorder.eventsLost();
+  return m;
+}
 
 void say(const std::string& text) {
   fmt::print("tautline log record: {}\n", text);
@@ -64,12 +90,17 @@ ExitCode run(const Options& options) {
   Subscriber subscriber(recorder);
   lcm.subscribe(".*", &Subscriber::onMessage, &subscriber)->setQueueCapacity(kQueueCapacity);
   say("waiting for an arming; logs go to " + options.folder);
+  Time next_status{};
   for (Time next_tick{}; !termination_requested;) {
     lcm.handleTimeout(kPollMs);
     const Time now = monotonicNow();
     if (now < next_tick) continue;
     next_tick = now + std::chrono::milliseconds(kPollMs);
     recorder.tick(now);
+    if (now < next_status) continue;
+    next_status = now + kStatusPeriod;
+    const tautline::log_status_t status = statusOf(recorder, options.folder);
+    lcm.publish(channel::kLogStatus, &status);
   }
   recorder.close();
   return ExitCode::kOk;

@@ -34,10 +34,9 @@ tautline::station_input_t randomMessage(std::mt19937_64& random) {
   m.has_turned_away = 1;
   m.turned_away_result = static_cast<std::int8_t>(random() % kAckResultNames.size());
   for (auto* name : {&m.command_name, &m.heartbeat_name}) put(*name, operatorName("anna@bench"));
-  for (std::int8_t* flag :
-       {&m.sticks_dead_man, &m.reel_valid, &m.angles_valid, &m.attitude_valid, &m.gimbal_valid,
-        &m.vehicle_valid, &m.ground_valid, &m.link_connected, &m.real_time,
-        &m.clock_synchronized, &m.recorder_recording}) {
+  for (std::int8_t* flag : {&m.sticks_dead_man, &m.reel_valid, &m.angles_valid, &m.attitude_valid,
+                            &m.gimbal_valid, &m.vehicle_valid, &m.ground_valid, &m.link_connected,
+                            &m.real_time, &m.clock_synchronized, &m.recorder_recording}) {
     *flag = static_cast<std::int8_t>(random() % 2);
   }
   m.reel_has_tension = 1;
