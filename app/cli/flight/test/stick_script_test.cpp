@@ -32,7 +32,7 @@ TEST(StickScript, BadRowsAreNamedByLine) {
   for (const char* row :
        {"1 1 0 0 0 0", "1 2 0 0 0 0 0", "-1 1 0 0 0 0 0", "one 1 0 0 0 0 0", "1 1 0 0 0 0 0 0"}) {
     try {
-      readStickScript(fileWith(std::string("1 1 0 0 0 0 0\n") + row + "\n"));
+      static_cast<void>(readStickScript(fileWith(std::string("1 1 0 0 0 0 0\n") + row + "\n")));
       ADD_FAILURE() << row;
     } catch (const InputError& e) {
       EXPECT_EQ(e.problem().line, 2) << row;
@@ -41,7 +41,7 @@ TEST(StickScript, BadRowsAreNamedByLine) {
 }
 
 TEST(StickScript, AMissingFileIsNamed) {
-  EXPECT_THROW(readStickScript("/nowhere/sticks.txt"), InputError);
+  EXPECT_THROW(static_cast<void>(readStickScript("/nowhere/sticks.txt")), InputError);
 }
 
 }  // namespace
