@@ -48,7 +48,10 @@ class LastMessages final : public TelemetrySink {
 
 class TelemetryTest : public ::testing::Test {
  protected:
-  TelemetryTest() { telemetry_.setPlace(kPlace); }
+  TelemetryTest() {
+    telemetry_.setPlace(kPlace);
+    output_.operators = &operators_;
+  }
   void tell(EventCode code) {
     output_.events[0] = {code, {}, {}};
     output_.event_count = 1;
@@ -57,6 +60,9 @@ class TelemetryTest : public ::testing::Test {
 
   LastMessages sink_;
   Telemetry telemetry_{sink_, RunMode::kSim, Duration::zero(), 10ms};
+  CoreConfig config_;
+  MissionStore missions_;
+  OperatorDialogue operators_{config_, missions_};
   StepInput input_;
   StepOutput output_;
 };
