@@ -19,7 +19,7 @@ namespace tautline {
 
 struct ContactWatchConfig {
   double through_obstacle_m{0.3};
-  double through_time_s{2.0};
+  double through_time_s{1.5};
   double height_residual_m{0.6};
   double height_time_s{3.0};
   double nis{6.0};

@@ -250,8 +250,8 @@ TEST(ContactWatch, EachWitnessSpeaks) {
   };
   const Case cases[] = {
       {"calm", calm, 20.0, false},
-      {"behind a pillar of the map", with([&](auto& in) { in.p_WD = behind; }), 2.2, true},
-      {"behind it for a moment", with([&](auto& in) { in.p_WD = behind; }), 1.8, false},
+      {"behind a pillar of the map", with([&](auto& in) { in.p_WD = behind; }), 1.7, true},
+      {"behind it for a moment", with([&](auto& in) { in.p_WD = behind; }), 1.3, false},
       {"innovations", with([](auto& in) { in.nis = 8.0; }), 1.1, true},
       {"higher than it can be", with([](auto& in) { in.height_residual = -1.5; }), 3.0, true},
       {"a barometer's drift", with([](auto& in) { in.height_residual = 0.4; }), 30.0, false},
