@@ -227,8 +227,9 @@ bool Guidance::goingBack() const noexcept {
 void Guidance::recordFlight(const GuidanceInput& in) noexcept {
   constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
                                         Condition::kTetherBroken};
-  if (!in.estimate.usable() || isIn(in.mode, maskOf({Mode::kTakeoff, Mode::kDescend}))) return;
+  if (!in.estimate.usable() || in.mode == Mode::kDescend) return;
   p_AD_ = in.estimate.p_WD - contacts_.anchor().p_WA;
+  if (in.mode == Mode::kTakeoff) return;
   if (goingBack()) {
     path_.cutAfter(executor_.status().waypoint);
   } else {

@@ -188,5 +188,19 @@ TEST_F(GuidanceTest, LeavesTheMotorsToAVehicleThatLandsByItself) {
   }
 }
 
+TEST_F(GuidanceTest, DescendsFromWhereATakeoffHasCome) {
+  enter(Mode::kArmed);
+  phase_ = VehiclePhase::kFlying;
+  enter(Mode::kTakeoff);
+  step(std::chrono::seconds(10));
+  enter(Mode::kDescend);
+  double height = 0.0;
+  while (output_.command.action != VehicleAction::kMotorStop) {
+    step();
+    height = (plant_.position() - config_.guidance.home_position_m).y();
+  }
+  EXPECT_LT(height, 0.0);
+}
+
 }  // namespace
 }  // namespace tautline
