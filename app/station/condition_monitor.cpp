@@ -96,8 +96,9 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
     L_total_ = f.reel.value.length;
     length = {f.reel.sequence, f.reel.time, L_total_};
   }
+  // A parked tether lies slack and its end may point anywhere.
   SampledAngles direction;
-  if (isGood(f.angles, angles))
+  if (isFlying(f) && isGood(f.angles, angles))
     direction = {f.angles.sequence, f.angles.time, f.angles.value.theta, f.angles.value.phi};
   jump_.update(length, direction, findings_);
 
@@ -105,7 +106,7 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
   std::optional<double> L_total, phi;
   if (parked && reel.ok()) L_total = L_total_;
   if (parked && angles.ok()) phi = f.angles.value.phi;
-  parked_.update(L_total, phi, findings_);
+  parked_.update(in.now, L_total, phi, findings_);
 }
 
 void ConditionMonitor::watchTether(const MonitorInput& in) noexcept {

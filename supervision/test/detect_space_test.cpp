@@ -191,22 +191,32 @@ TEST(HostWatch, LateAllTheTimeAndLateOnce) {
 }
 
 TEST(ParkedCheck, TheReadingsAreThoseOfHome) {
-  const ParkedCheck check(ParkedCheckConfig{}, {0.3, -0.2, 0.9});
+  const Eigen::Vector3d home(0.3, -0.2, 0.9);
   const double L = std::sqrt(0.3 * 0.3 + 0.2 * 0.2 + 0.9 * 0.9);
   const double phi = std::atan2(0.3, 0.9);
   const auto at = [&](std::optional<double> length, std::optional<double> azimuth) {
+    ParkedCheck check(ParkedCheckConfig{}, home);
     Findings out;
-    check.update(length, azimuth, out);
+    check.update(Time{}, length, azimuth, out);
     return out.raised;
   };
   EXPECT_TRUE(at(L + 0.1, phi - 0.1 + 2.0 * 3.14159265358979).empty());
   EXPECT_EQ(at(1.42 * L, phi), ConditionSet{C::kLengthUncalibrated});
   EXPECT_EQ(at(L, phi + 1.57), ConditionSet{C::kAzimuthUncalibrated});
   EXPECT_TRUE(at({}, {}).empty());
-  const ParkedCheck below(ParkedCheckConfig{}, {0.1, -1.0, 0.1});
+  ParkedCheck below(ParkedCheckConfig{}, {0.1, -1.0, 0.1});
   Findings out;
-  below.update({}, 3.0, out);
+  below.update(Time{}, {}, 3.0, out);
   EXPECT_TRUE(out.raised.empty()) << "under the reel azimuth means nothing";
+}
+
+TEST(ParkedCheck, ASwayingTetherIsNoWrongAzimuth) {
+  ParkedCheck check(ParkedCheckConfig{}, {0.0, -0.2, 0.9});
+  for (int i = 0; i < 500; ++i) {
+    Findings out;
+    check.update(Time{} + std::chrono::milliseconds(10 * i), {}, 0.8 * std::sin(0.3 * i), out);
+    EXPECT_TRUE(out.raised.empty()) << "cycle " << i;
+  }
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ TEST(OscillationWatch, FindsEveryFrequencyOfTheBand) {
   for (const double hz : {0.35, 0.5, 1.0, 2.0, 3.0}) {
     Oscillation o;
     const auto swing = [hz](double t) {
-      return Eigen::Vector3d(0.3 * t, 0.5, 0.25 * std::sin(2.0 * kPi * hz * t));
+      return Eigen::Vector3d(0.3 * t, 0.5, 0.3 * std::sin(2.0 * kPi * hz * t));
     };
     EXPECT_TRUE(o.fly(9.0, swing)) << hz << " Hz";
     o.fly(6.0, [](double) { return Eigen::Vector3d::Zero(); });

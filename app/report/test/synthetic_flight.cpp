@@ -184,14 +184,15 @@ class Writer {
   void publishState(double t) {
     station_state_t m{};
     m.run_mode = 0;
-    m.mode = static_cast<std::int8_t>(t < 2.0                      ? 0
-                                      : t < kTakeoffAt             ? 1
-                                      : t < 7.0                    ? 2
-                                      : t < kSyntheticMissionStart ? 3
-                                      : t <= mission_end_          ? 4
-                                      : t <= mission_end_ + 2.0    ? 3
-                                      : onGround(t)                ? 0
-                                                                   : 5);
+    const Mode mode = t < 2.0                      ? Mode::kStandby
+                      : t < kTakeoffAt             ? Mode::kArmed
+                      : t < 7.0                    ? Mode::kTakeoff
+                      : t < kSyntheticMissionStart ? Mode::kHold
+                      : t <= mission_end_          ? Mode::kAuto
+                      : t <= mission_end_ + 2.0    ? Mode::kHold
+                      : onGround(t)                ? Mode::kStandby
+                                                   : Mode::kLand;
+    m.mode = static_cast<std::int8_t>(mode);
     m.mission_hash = kSyntheticHash;
     m.mission_items = 4;
     publish("STATION_STATE", m, t);

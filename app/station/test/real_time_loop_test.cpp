@@ -98,12 +98,12 @@ TEST_F(RealTimeLoopTest, OneStalledCycleIsSeenByTheSupervisor) {
   ASSERT_EQ(sink_.conditions.size(), sink_.missed.size());
   EXPECT_GE(sink_.missed[kStalled + 1], config_.overruns_in_a_row);
   EXPECT_TRUE(sink_.conditions[kStalled + 1].has(Condition::kOverruns));
-  // Whatever this machine did to the other cycles: the condition follows what the loop counted, and
-  // lasts for its recovery time.
-  bool counted = false;
+  // Whatever this machine did to the other cycles: the condition begins with what the loop counted,
+  // and stays for its recovery time.
+  bool missed_before = false;
   for (std::size_t i = 0; i < sink_.missed.size(); ++i) {
-    counted = counted || sink_.missed[i] >= config_.overruns_in_a_row;
-    EXPECT_EQ(sink_.conditions[i].has(Condition::kOverruns), counted) << "cycle " << i;
+    missed_before = missed_before || sink_.missed[i] >= config_.overruns_in_a_row;
+    EXPECT_EQ(sink_.conditions[i].has(Condition::kOverruns), missed_before) << "cycle " << i;
   }
   EXPECT_GE(summary.skipped_periods, config_.overruns_in_a_row);
   EXPECT_EQ(device.written, 2 * kStalled + 1);
