@@ -87,7 +87,7 @@ def try_info(whole):
     for _, _, channel, data in events:
         if channel == "STATION_STATE" and (not modes or modes[-1] != data[17]):
             modes.append(data[17])
-    names = ["STANDBY", "ARMED", "TAKEOFF", "HOLD", "AUTO", "LAND", "ESTOP"]
+    names = ["STANDBY", "ARMED", "TAKEOFF", "HOLD", "TELEOP", "AUTO", "FAILSAFE", "BACKUP", "RETURN", "LAND", "DESCEND", "ESTOP"]
     checks.equal("modes", info["modes"], [names[m] for m in modes])
     checks.equal("one mission", len(info["missions"]), 1)
     text = tautline("log", "info", whole).stdout
