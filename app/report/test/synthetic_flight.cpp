@@ -19,6 +19,7 @@
 #include <tautline/vehicle_state_t.hpp>
 
 #include "common/tether_geometry.h"
+#include "supervision/supervisor.h"
 
 namespace tautline::report {
 namespace {
