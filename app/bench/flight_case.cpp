@@ -71,8 +71,9 @@ Phase readPhase(TomlTable& table) {
 
 template <class Config>
 void readConfig(TomlTable& table, const char* key, const fs::path& folder, Config& config) {
-  std::string path;
-  if (table.read(key, path)) config = loadConfig<Config>(folder / path);
+  if (std::string path; table.read(std::string(key) + "_config", path))
+    config = loadConfig<Config>(folder / path);
+  for (TomlTable& changes : table.table(key)) ConfigReader::readStruct(std::move(changes), config);
 }
 
 /// What an operator does who flies the mission and lands.
@@ -240,8 +241,8 @@ void readSurroundings(TomlTable& table, const std::string& file, FlightCase& fli
   if (std::string mission; table.read("mission", mission))
     flight.mission =
         std::shared_ptr<const MissionPlan>(readMission(folder / mission).plan.release());
-  readConfig(table, "station_config", folder, flight.bench.station);
-  readConfig(table, "sim_config", folder, flight.bench.sim);
+  readConfig(table, "station", folder, flight.bench.station);
+  readConfig(table, "sim", folder, flight.bench.sim);
 }
 
 FlightCase readScenario(const std::string& file) {

@@ -1,5 +1,6 @@
 #include "app/station/guidance.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "app/station/station_config.h"
@@ -12,6 +13,7 @@ constexpr double kBelowGround =
 constexpr double kGroundHeight = 0.3;  // [m] no lower for a while and below this: on the ground
 constexpr Duration kNoLowerFor = std::chrono::seconds(2);
 constexpr int kGroundedSamples = 2;
+constexpr Duration kStandsForSure = std::chrono::seconds(10);  // whatever the estimate says
 constexpr double kSmallestDescent = 0.01;  // [m]
 constexpr double kAllTheWay = std::numeric_limits<double>::infinity();
 
@@ -39,7 +41,8 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
       if (!has_flown_) command.action = paced(VehicleAction::kTakeoff, in.now);
       break;
     case Mode::kLand:
-      if (landing_ == Landing::kStopMotors)
+      // A take-off that is broken off before the vehicle says that it flies still lifts off.
+      if (landing_ == Landing::kStopMotors || !has_flown_)
         command.action = paced(VehicleAction::kMotorStop, in.now);
       break;
     default:
@@ -64,13 +67,22 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
   return out;
 }
 
-/// One garbled status line must not end a flight, so standing takes several samples in a row.
+/// One garbled status line must not end a flight, so standing takes several samples in a row; nor a
+/// vehicle that says so while the estimate has it in the air, so there it takes long. One that gave
+/// up flying has landed once it is low for as long.
 void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
   const bool stands = in.vehicle == VehiclePhase::kIdle || in.vehicle == VehiclePhase::kStopped;
   const bool flies = in.vehicle == VehiclePhase::kFlying || in.vehicle == VehiclePhase::kLanding;
   if (flies && in.mode != Mode::kStandby) has_flown_ = true;
-  if (!stands) grounded_samples_ = 0;
+  if (!stands || in.entered) grounded_samples_ = 0;
   if (stands && in.sensors->vehicle.sequence != vehicle_sequence_) ++grounded_samples_;
+  if (flies || in.entered) not_flying_since_ = in.now;
+  const bool in_the_air =
+      in.estimate.usable() &&
+      in.estimate.p_WD.y() - config_.home_position_m.y() > kGroundHeight;
+  const bool for_long = in.now - not_flying_since_ > kStandsForSure;
+  stands_ = grounded_samples_ >= kGroundedSamples && (!in_the_air || for_long);
+  gave_up_ = in.vehicle == VehiclePhase::kFault && !in_the_air && for_long;
   vehicle_sequence_ = in.sensors->vehicle.sequence;
 }
 
@@ -94,7 +106,9 @@ void Guidance::enter(const GuidanceInput& in) noexcept {
       break;
     case Mode::kDescend:
       landing_ = Landing::kDescend;
-      descent_.begin(p_AD_, (contacts_.anchor().p_WA + p_AD_ - config_.home_position_m).y());
+      // A vehicle that was lost sight of in its take-off has gone on up to the hover point.
+      descent_.begin(p_AD_, std::max((contacts_.anchor().p_WA + p_AD_ - config_.home_position_m).y(),
+                                     config_.takeoff_height_m));
       break;
     default:
       break;
@@ -227,8 +241,9 @@ bool Guidance::goingBack() const noexcept {
 void Guidance::recordFlight(const GuidanceInput& in) noexcept {
   constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
                                         Condition::kTetherBroken};
-  if (!in.estimate.usable() || isIn(in.mode, maskOf({Mode::kTakeoff, Mode::kDescend}))) return;
+  if (!in.estimate.usable() || in.mode == Mode::kDescend) return;
   p_AD_ = in.estimate.p_WD - contacts_.anchor().p_WA;
+  if (in.mode == Mode::kTakeoff) return;
   if (goingBack()) {
     path_.cutAfter(executor_.status().waypoint);
   } else {
@@ -267,9 +282,8 @@ ConditionSet Guidance::conditions() const noexcept {
   set.set(Condition::kAtTarget,
           (back && completed) || (mode_ == Mode::kTakeoff && under_way_ &&
                                   executor_.status().distance < config_.takeoff_radius_m));
-  const bool stands = grounded_samples_ >= kGroundedSamples;
   // A take-off that never left the ground ends there too.
-  set.set(Condition::kTouchdown, stands && (has_flown_ || mode_ == Mode::kLand));
+  set.set(Condition::kTouchdown, (stands_ || gave_up_) && (has_flown_ || mode_ == Mode::kLand));
   set.set(Condition::kMissionDone, mode_ == Mode::kAuto && completed);
   set.set(Condition::kMissionFailed, routeFailed() || (back && !path_.known()));
   set.set(Condition::kNoWayBack, isIn(mode_, kFlyingModes) && !path_.known());
