@@ -1,6 +1,5 @@
 #include "app/station/guidance.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "app/station/station_config.h"
@@ -100,15 +99,15 @@ void Guidance::enter(const GuidanceInput& in) noexcept {
       break;
     case Mode::kTakeoff:
       path_.begin(aboveHome(config_.takeoff_height_m));
+      // A vehicle that is lost sight of in its take-off goes on up to about there.
+      p_AD_ = aboveHome(config_.takeoff_height_m) - contacts_.anchor().p_WA;
       break;
     case Mode::kLand:
       landing_ = contacts_.contactCount() > 0 ? Landing::kRetrace : Landing::kApproach;
       break;
     case Mode::kDescend:
       landing_ = Landing::kDescend;
-      // A vehicle that was lost sight of in its take-off has gone on up to the hover point.
-      descent_.begin(p_AD_, std::max((contacts_.anchor().p_WA + p_AD_ - config_.home_position_m).y(),
-                                     config_.takeoff_height_m));
+      descent_.begin(p_AD_, (contacts_.anchor().p_WA + p_AD_ - config_.home_position_m).y());
       break;
     default:
       break;
@@ -211,7 +210,8 @@ void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcep
 
 bool Guidance::onGround(const GuidanceInput& in) noexcept {
   const double height = in.estimate.p_WD.y() - config_.home_position_m.y();
-  if (height < lowest_ - kSmallestDescent) {
+  // One that stands still comes no lower either.
+  if (height < lowest_ - kSmallestDescent || in.conditions.any(kStandStill)) {
     lowest_ = height;
     lowest_since_ = in.now;
   }
@@ -241,9 +241,10 @@ bool Guidance::goingBack() const noexcept {
 void Guidance::recordFlight(const GuidanceInput& in) noexcept {
   constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
                                         Condition::kTetherBroken};
-  if (!in.estimate.usable() || in.mode == Mode::kDescend) return;
+  if (!in.estimate.usable() || in.conditions.any(kStandStill) ||
+      isIn(in.mode, maskOf({Mode::kTakeoff, Mode::kDescend})))
+    return;
   p_AD_ = in.estimate.p_WD - contacts_.anchor().p_WA;
-  if (in.mode == Mode::kTakeoff) return;
   if (goingBack()) {
     path_.cutAfter(executor_.status().waypoint);
   } else {

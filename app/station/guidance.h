@@ -23,6 +23,15 @@ namespace tautline {
 
 struct GuidanceConfig;
 
+/// Nobody hears the rates.
+inline constexpr ConditionSet kUnheard{Condition::kLinkLost, Condition::kVehicleStale};
+/// While one of these counts the drone stands still in every mode but DESCEND.
+inline constexpr ConditionSet kStandStill =
+    kUnheard | ConditionSet{Condition::kReelStale,   Condition::kReelStuck,
+                            Condition::kReelJump,    Condition::kAnglesStale,
+                            Condition::kAnglesStuck, Condition::kAnglesJump,
+                            Condition::kLocalizationLost};
+
 struct GuidanceInput {
   Time now{};
   Duration dt{};
