@@ -54,6 +54,7 @@ constexpr std::array kTransitions{
     Transition{maskOf({M::kTeleop}), R::kNone, {C::kNoOperator}, {}, {}, M::kFailsafe},
     Transition{maskOf({M::kHold, M::kTeleop, M::kAuto}), R::kNone, {C::kBatteryLow}, {C::kNoWayBack}, {}, M::kLand},
     Transition{maskOf({M::kHold, M::kTeleop, M::kAuto}), R::kNone, {C::kBatteryLow}, {}, {}, M::kReturn},
+    Transition{maskOf({M::kAuto}), R::kNone, {}, {C::kMissionDone, C::kNoOperator}, {C::kNoWayBack}, M::kReturn},
     Transition{maskOf({M::kAuto}), R::kNone, {C::kMissionDone, C::kSticksMoved}, {}, {}, M::kHold},
     Transition{maskOf({M::kTakeoff}), R::kNone, {C::kAtTarget}, {C::kVehicleFlying}, {}, M::kHold},
     Transition{maskOf({M::kReturn}), R::kNone, {C::kOperatorLost, C::kNoOperator, C::kBatteryLow}, {C::kAtTarget}, {}, M::kLand},

@@ -13,6 +13,7 @@
 namespace tautline::bench {
 namespace {
 
+constexpr Duration kAskAgain = std::chrono::seconds(5);   // for so long, while refused
 constexpr Duration kPairDelay = std::chrono::seconds(1);  // the second fault after the first
 
 Duration seconds(TomlTable& table, const char* key, double value) {
@@ -38,6 +39,8 @@ CampaignPhase readPhase(TomlTable& table) {
   phase.at = seconds(table, "at_s", 1.0);
   phase.limit = seconds(table, "limit_s", 120.0);
   table.read("pairs", phase.pairs);
+  phase.ask = readRequest(table, "ask");
+  phase.ask_at = seconds(table, "ask_at_s", 0.0);
   table.finish();
   return phase;
 }
@@ -51,7 +54,36 @@ std::vector<std::string> readWords(TomlTable& table, const char* key) {
   return words;
 }
 
-CampaignRow readRow(TomlTable& table) {
+Failsafe readFailsafe(TomlTable& table) {
+  Failsafe f;
+  table.require("name", f.name);
+  f.detect = readConditions(table, "detect");
+  f.detect_in = seconds(table, "detect_s", 5.0);
+  f.detect_phases = readModes(table, "detect_in");
+  f.react = readModes(table, "react");
+  f.react_in = seconds(table, "react_s", 5.0);
+  f.react_phases = readModes(table, "react_in");
+  f.end = readModes(table, "end");
+  table.finish();
+  if (f.detect.empty() != f.detect_phases.empty() || f.react.empty() != f.react_phases.empty())
+    throw table.error("detect_in", "or react_in does not go with detect or react", {},
+                      "say in which phases it is owed");
+  return f;
+}
+
+/// Anything but a landing has to be explained in the table.
+void requireWhy(TomlTable& table, const CampaignRow& row) {
+  ModeSet landing;
+  landing.add(Mode::kStandby);
+  std::string why;
+  table.read("why", why);
+  if (why.empty() == (row.landed && !row.may_crash && row.owed.end == landing)) return;
+  throw table.error("why", why.empty() ? "is missing" : "explains nothing", {},
+                    "with `crash`, `landed = false` or another `end` than STANDBY say what really "
+                    "happens and why that is acceptable; without leave it out");
+}
+
+CampaignRow readRow(TomlTable& table, const std::vector<Failsafe>& failsafes) {
   CampaignRow row;
   row.fault = sim::readFault(table).fault;
   row.label = describe(row.fault);
@@ -62,22 +94,17 @@ CampaignRow readRow(TomlTable& table) {
   row.phases = readModes(table, "phases");
   table.read("pairs", row.pairs);
   table.read("crash", row.may_crash);
-  row.end = readModes(table, "end");
   table.read("landed", row.landed);
-  row.reaction = readModes(table, "reaction");
-  row.reaction_in = seconds(table, "reaction_s", 5.0);
-  for (const std::string& name : readWords(table, "notice")) {
-    const Phase parsed = parsePhase(table, name);
-    if (parsed.kind != Phase::Kind::kCondition)
-      throw table.error("notice", "\"" + name + "\" is no condition");
-    row.notice.push_back(parsed.condition);
-  }
-  row.notice_in = seconds(table, "notice_s", 5.0);
-  table.read("gap", row.gap);
+  std::string name;
+  table.require("failsafe", name);
+  const auto owed = std::find_if(failsafes.begin(), failsafes.end(),
+                                 [&](const Failsafe& f) { return f.name == name; });
+  if (owed == failsafes.end())
+    throw table.error("failsafe", "\"" + name + "\" is none", "the names in `failsafe`");
+  row.owed = *owed;
+  if (table.has("end")) row.owed.end = readModes(table, "end");
+  requireWhy(table, row);
   table.finish();
-  if (row.end.empty())
-    throw table.error("end", "is missing", "modes, separated by blanks",
-                      "say how a flight with this fault may end");
   return row;
 }
 
@@ -93,26 +120,19 @@ bool canHave(const FlightCase& flight, const CampaignRow& row) {
   }
 }
 
-bool airborne(Mode mode) noexcept {
-  return mode != Mode::kStandby && mode != Mode::kArmed && mode != Mode::kEstop;
-}
-
 /// What one row alone expects, beside how the flight ends.
-void addExpectations(const CampaignRow& row, Mode mode, FlightCase& flight) {
-  const Phase fault{Phase::Kind::kFault, {}, {}};
-  if (mode == Mode::kAuto && !row.reaction.empty()) {
-    Expectation e;
-    e.phase = fault;
-    e.within = row.reaction_in;
-    e.modes = row.reaction;
+void addExpectations(const Failsafe& owed, Mode mode, FlightCase& flight) {
+  Expectation e;
+  e.phase = {Phase::Kind::kFault, {}, {}};
+  if (owed.react_phases.has(mode)) {
+    e.within = owed.react_in;
+    e.modes = owed.react;
     flight.expectations.push_back(e);
   }
-  if (airborne(mode) && !row.notice.empty()) {
-    Expectation e;
-    e.phase = fault;
-    e.within = row.notice_in;
+  if (owed.detect_phases.has(mode)) {
+    e.within = owed.detect_in;
     e.kind = Expectation::Kind::kCondition;
-    for (const Condition c : row.notice) e.conditions.set(c);
+    e.conditions = owed.detect;
     flight.expectations.push_back(e);
   }
 }
@@ -135,9 +155,11 @@ Campaign readCampaign(const std::string& file) {
     campaign.flights.back().limits.sequence = sequence;
   }
   for (TomlTable& table : root.tables("phase")) campaign.phases.push_back(readPhase(table));
+  std::vector<Failsafe> failsafes;
+  for (TomlTable& table : root.tables("failsafe")) failsafes.push_back(readFailsafe(table));
   std::set<std::string> labels;
   for (TomlTable& table : root.tables("fault")) {
-    campaign.rows.push_back(readRow(table));
+    campaign.rows.push_back(readRow(table, failsafes));
     if (!labels.insert(campaign.rows.back().label).second)
       throw table.error("label", "\"" + campaign.rows.back().label + "\" is there twice", {},
                         "give the row a label of its own");
@@ -179,24 +201,29 @@ FlightCase flightOf(const Campaign& campaign, const CampaignCase& c) {
   flight.bench.seed = fnv1a(c.name) ^ campaign.seed;
   flight.limit = phase.limit;
   flight.limits.may_crash = first.may_crash;
-  flight.limits.end = first.end;
+  flight.limits.end = first.owed.end;
   flight.limits.landed = first.landed;
+  if (phase.ask != Request::kNone)
+    flight.script.push_back({{Phase::Kind::kMode, Mode::kAuto, {}},
+                             false,
+                             phase.ask_at,
+                             phase.ask,
+                             kAskAgain,
+                             {}});
   const auto add = [&](const CampaignRow& row, Duration at) {
     FaultPlan plan{{Phase::Kind::kMode, phase.mode, {}}, row.fault};
     plan.fault.at = Time{} + at;
     flight.faults.push_back(plan);
   };
   add(first, phase.at);
-  flight.gap = first.gap;
   if (!c.second) {
-    addExpectations(first, phase.mode, flight);
+    addExpectations(first.owed, phase.mode, flight);
     return flight;
   }
   const CampaignRow& second = campaign.rows[*c.second];
   add(second, phase.at + kPairDelay);
-  if (flight.gap.empty()) flight.gap = second.gap;
   flight.limits.may_crash = first.may_crash || second.may_crash;
-  flight.limits.end = first.end | second.end;
+  flight.limits.end = first.owed.end | second.owed.end;
   flight.limits.landed = first.landed && second.landed;
   return flight;
 }

@@ -17,6 +17,20 @@ struct CampaignPhase {
   Duration at{};     ///< After the mode was first entered.
   Duration limit{};  ///< Of the whole flight.
   bool pairs{false};
+  Request ask{Request::kNone};  ///< How the operator gets there out of the mission; kNone: anyway.
+  Duration ask_at{};            ///< After AUTO began.
+};
+
+/// What the station owes in a situation: a row of the failsafe table (docs/supervisor.md).
+struct Failsafe {
+  std::string name;        ///< Unique.
+  ConditionSet detect;     ///< One of these is raised ...
+  Duration detect_in{};    ///< ... within this time ...
+  ModeSet detect_phases;   ///< ... if the fault begins in one of these.
+  ModeSet react;           ///< Into one of these modes ...
+  Duration react_in{};     ///< ... within this time ...
+  ModeSet react_phases;    ///< ... if the fault begins in one of these.
+  ModeSet end;             ///< The flight ends in one of these.
 };
 
 /// One row of the table: a fault and what is expected of a flight that has it.
@@ -26,14 +40,9 @@ struct CampaignRow {
   std::vector<std::string> flights;  ///< Names; empty: all whose device can have it.
   ModeSet phases;                    ///< Empty: all.
   bool pairs{false};                 ///< Also together with the other rows that have this.
+  Failsafe owed;                     ///< Without detect and react: to be flown through.
   bool may_crash{false};             ///< It may end so, and no station could prevent it.
-  ModeSet end;
-  bool landed{true};              ///< Ends on the ground, motors off.
-  ModeSet reaction;               ///< From AUTO: into one of these ...
-  Duration reaction_in{};         ///< ... within this time.
-  std::vector<Condition> notice;  ///< In flight: any of these is raised ...
-  Duration notice_in{};           ///< ... within this time.
-  std::string gap;                ///< What the station is known not to do: failures are no news.
+  bool landed{true};                 ///< Ends on the ground, motors off.
 };
 
 struct Campaign {

@@ -77,6 +77,7 @@ class Operator {
   struct Said {
     std::optional<OperatorCommand> command;
     std::optional<tautline::mission_chunk_t> chunk;
+    std::optional<TeleopRates> sticks;
   };
   Said next(const Lockstep& bench, const Phases& phases) {
     Said said;
@@ -120,7 +121,12 @@ class Operator {
       if (!state.first) state.first = now;
       state.last = now;
       state.mode_entered = phases.entered();
-      say(entry.verb, state);
+      if (entry.sticks) {
+        state.taken = true;
+        queue_.push_back({{}, {}, entry.sticks});
+      } else {
+        say(entry.verb, state);
+      }
       return;
     }
   }
@@ -132,11 +138,11 @@ class Operator {
       forEachChunk(*flight_.mission, [&](tautline::mission_chunk_t& chunk) {
         chunk.session = kSession;
         chunk.sequence = ++sequence_;
-        queue_.push_back({{}, chunk});
+        queue_.push_back({{}, chunk, {}});
         return true;
       });
     }
-    queue_.push_back({OperatorCommand{kSession, ++sequence_, verb, hash}, {}});
+    queue_.push_back({OperatorCommand{kSession, ++sequence_, verb, hash}, {}, {}});
     state.sequence = sequence_;
     if (verb == Request::kNavigate) navigates_.push_back(sequence_);
   }
@@ -191,6 +197,7 @@ class Expectations {
   static bool seen(const Expectation& e, const StepOutput& out) {
     if (e.kind == Expectation::Kind::kMode) return e.modes.has(out.supervision.mode);
     if (e.kind == Expectation::Kind::kCondition) return out.conditions.any(e.conditions);
+    if (e.kind == Expectation::Kind::kClear) return !out.conditions.any(e.conditions);
     return std::any_of(out.events.begin(), out.events.begin() + out.event_count,
                        [&](const StationEvent& event) { return event.code == e.event; });
   }
@@ -235,7 +242,6 @@ CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
   const Time began = monotonicNow();
   CaseResult result;
   result.name = flight.name;
-  result.gap = flight.gap;
   result.seed = flight.bench.seed;
   Lockstep bench(flight.bench, sink);
   FlightWatch watch(flight.limits);
@@ -249,6 +255,7 @@ CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
   while (result.failure.empty() && bench.now() < Time{} + flight.limit &&
          bench.now() < busy + kSettled) {
     const Operator::Said said = pilot.next(bench, phases);
+    if (said.sticks) bench.holdSticks(Sticks{kSession, true, *said.sticks});
     const StepOutput& out = bench.step(said.command, said.chunk ? &*said.chunk : nullptr);
     for (const std::int32_t sequence : pilot.navigates()) watch.navigateAsked(sequence);
     pilot.hear(out);

@@ -13,7 +13,6 @@ struct CaseResult {
   std::string name;
   std::uint64_t seed{0};
   std::string failure;  ///< What was expected and what happened; empty: passed.
-  std::string gap;      ///< FlightCase::gap.
   Mode end{Mode::kStandby};
   sim::CrashReason crash{sim::CrashReason::kNone};
   bool faulted{false};   ///< The first fault has begun: the flight got that far.
@@ -22,9 +21,6 @@ struct CaseResult {
   double height_max_m{0.0};  ///< Over the floor.
 
   [[nodiscard]] bool passed() const noexcept { return failure.empty(); }
-  /// Failed, and known to.
-  [[nodiscard]] bool knownGap() const noexcept { return !passed() && !gap.empty(); }
-  [[nodiscard]] bool failed() const noexcept { return !passed() && gap.empty(); }
 };
 
 /// Flies until the station has been back in STANDBY or in ESTOP for a while, the vehicle has

@@ -71,18 +71,19 @@ Phase readPhase(TomlTable& table) {
 
 template <class Config>
 void readConfig(TomlTable& table, const char* key, const fs::path& folder, Config& config) {
-  std::string path;
-  if (table.read(key, path)) config = loadConfig<Config>(folder / path);
+  if (std::string path; table.read(std::string(key) + "_config", path))
+    config = loadConfig<Config>(folder / path);
+  for (TomlTable& changes : table.table(key)) ConfigReader::readStruct(std::move(changes), config);
 }
 
 /// What an operator does who flies the mission and lands.
 std::vector<OperatorEntry> missionScript() {
   using namespace std::chrono_literals;
   const auto after = [](Mode mode) { return Phase{Phase::Kind::kMode, mode, {}}; };
-  return {{{}, false, 1s, Request::kArm, 5s},
-          {after(Mode::kArmed), false, 1s, Request::kTakeoff, {}},
-          {after(Mode::kHold), false, 3s, Request::kNavigate, {}},
-          {after(Mode::kHold), true, 8s, Request::kLand, {}}};
+  return {{{}, false, 1s, Request::kArm, 5s, {}},
+          {after(Mode::kArmed), false, 1s, Request::kTakeoff, {}, {}},
+          {after(Mode::kHold), false, 3s, Request::kNavigate, {}, {}},
+          {after(Mode::kHold), true, 8s, Request::kLand, {}, {}}};
 }
 
 }  // namespace
@@ -101,6 +102,8 @@ std::string Expectation::text() const {
       return modes.text();
     case Kind::kCondition:
       return describe(conditions);
+    case Kind::kClear:
+      return "no " + describe(conditions);
     case Kind::kEvent:
       return fmt::format("\"{}\"", textOf(event).text);
     case Kind::kBound:
@@ -115,6 +118,21 @@ ModeSet readModes(TomlTable& table, const char* key) {
   table.read(key, text);
   std::istringstream words(text);
   for (std::string word; words >> word;) set.add(named(table, key, word, kModeNames).value);
+  return set;
+}
+
+Request readRequest(TomlTable& table, const char* key) {
+  std::string verb = nameOf(Request::kNone, kRequestNames);
+  table.read(key, verb);
+  return named(table, key, verb, kRequestNames).value;
+}
+
+ConditionSet readConditions(TomlTable& table, const char* key) {
+  ConditionSet set;
+  std::string text;
+  table.read(key, text);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) set.set(named(table, key, word, kConditionNames).value);
   return set;
 }
 
@@ -144,9 +162,16 @@ std::vector<OperatorEntry> readScript(TomlTable& root) {
     }
     entry.at = readSeconds(table, "at_s");
     entry.retry = readSeconds(table, "retry_s");
-    std::string verb;
-    table.require("verb", verb);
-    entry.verb = named(table, "verb", verb, kRequestNames).value;
+    std::vector<double> sticks;
+    if (table.read("sticks", sticks, Range{-2, 2})) {
+      if (sticks.size() != 3)
+        throw table.error("sticks", "has " + std::to_string(sticks.size()) + " rates",
+                          "[length m/s, elevation rad/s, azimuth rad/s]");
+      entry.sticks = TeleopRates{.length = sticks[0], .elevation = sticks[1], .azimuth = sticks[2]};
+    } else {
+      if (!table.has("verb")) throw table.error("verb", "is missing", "a verb, or sticks");
+      entry.verb = readRequest(table, "verb");
+    }
     table.finish();
     script.push_back(entry);
   }
@@ -174,15 +199,17 @@ Expectation readExpectation(TomlTable& table) {
   e.after = readSeconds(table, "after_s");
   e.within = readSeconds(table, "within_s", kDefaultWithin);
   const int count = static_cast<int>(table.has("mode")) + static_cast<int>(table.has("condition")) +
-                    static_cast<int>(table.has("event")) + static_cast<int>(table.has("bound"));
+                    static_cast<int>(table.has("clear")) + static_cast<int>(table.has("event")) +
+                    static_cast<int>(table.has("bound"));
   if (count != 1)
     throw table.error("", "expects " + std::to_string(count) + " things",
-                      "one of mode, condition, event, bound");
+                      "one of mode, condition, clear, event, bound");
   std::string text;
   e.modes = readModes(table, "mode");
-  if (table.read("condition", text)) {
-    e.kind = Expectation::Kind::kCondition;
-    e.conditions.set(named(table, "condition", text, kConditionNames).value);
+  if (table.has("condition") || table.has("clear")) {
+    const bool clear = table.has("clear");
+    e.kind = clear ? Expectation::Kind::kClear : Expectation::Kind::kCondition;
+    e.conditions = readConditions(table, clear ? "clear" : "condition");
   } else if (table.read("event", text)) {
     e.kind = Expectation::Kind::kEvent;
     e.event = eventNamed(table, text);
@@ -214,8 +241,8 @@ void readSurroundings(TomlTable& table, const std::string& file, FlightCase& fli
   if (std::string mission; table.read("mission", mission))
     flight.mission =
         std::shared_ptr<const MissionPlan>(readMission(folder / mission).plan.release());
-  readConfig(table, "station_config", folder, flight.bench.station);
-  readConfig(table, "sim_config", folder, flight.bench.sim);
+  readConfig(table, "station", folder, flight.bench.station);
+  readConfig(table, "sim", folder, flight.bench.sim);
 }
 
 FlightCase readScenario(const std::string& file) {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ class ModeSet {
   void add(Mode mode) noexcept { bits_ |= bit(mode); }
   [[nodiscard]] bool has(Mode mode) const noexcept { return (bits_ & bit(mode)) != 0; }
   [[nodiscard]] bool empty() const noexcept { return bits_ == 0; }
+  friend bool operator==(ModeSet a, ModeSet b) noexcept = default;
   friend ModeSet operator|(ModeSet a, ModeSet b) noexcept {
     a.bits_ |= b.bits_;
     return a;
@@ -43,13 +45,15 @@ struct Phase {
 };
 
 /// What an operator does, once, `at` after the beginning of the phase; or, with `in_mode`, whenever
-/// the station has been in that mode for so long.
+/// the station has been in that mode for so long: asks for something, or moves the sticks and holds
+/// them so.
 struct OperatorEntry {
   Phase phase;
   bool in_mode{false};
   Duration at{};
   Request verb{Request::kNone};
-  Duration retry{};  ///< Asks again for so long while it is refused.
+  Duration retry{};                   ///< Asks again for so long while it is refused.
+  std::optional<TeleopRates> sticks;  ///< Absent: left as they are.
 };
 
 /// A fault, `fault.at` after the beginning of the phase.
@@ -66,13 +70,13 @@ struct Quantity {
 
 /// What has to be seen between `after` and `after + within` from the beginning of the phase.
 struct Expectation {
-  enum class Kind : std::uint8_t { kMode, kCondition, kEvent, kBound };
+  enum class Kind : std::uint8_t { kMode, kCondition, kClear, kEvent, kBound };
   Phase phase;
   Duration after{};
   Duration within{};
   Kind kind{Kind::kMode};
   ModeSet modes;                      ///< kMode: one of these.
-  ConditionSet conditions;            ///< kCondition: any of these.
+  ConditionSet conditions;            ///< kCondition: any of these; kClear: none of these.
   EventCode event{};                  ///< kEvent
   const Quantity* quantity{nullptr};  ///< kBound: within `range` all the time.
   Range range;
@@ -104,11 +108,12 @@ struct FlightCase {
   std::vector<FaultPlan> faults;
   std::vector<Expectation> expectations;
   CaseLimits limits;
-  std::string gap;  ///< Why it is known to fail; empty: it is to pass.
 };
 
 /// Reading of names. All throw InputError that lists what there is.
 [[nodiscard]] ModeSet readModes(TomlTable& table, const char* key);  ///< Separated by blanks.
+[[nodiscard]] Request readRequest(TomlTable& table, const char* key);  ///< kNone if missing.
+[[nodiscard]] ConditionSet readConditions(TomlTable& table, const char* key);  ///< The same.
 [[nodiscard]] Phase parsePhase(const TomlTable& table, const std::string& text);
 [[nodiscard]] std::vector<OperatorEntry> readScript(TomlTable& root);
 [[nodiscard]] std::vector<ModeSequence> readSequence(TomlTable& root);

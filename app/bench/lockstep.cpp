@@ -105,6 +105,7 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
   beat(command);
   input_.command = faults_.hear(command);
   input_.chunk = faults_.operatorCut() ? nullptr : chunk;
+  input_.sticks = faults_.operatorCut() ? std::nullopt : sticks_;
   input_.missed_in_a_row = late > Duration::zero()
                                ? input_.missed_in_a_row + static_cast<std::int32_t>(late / period_)
                                : 0;

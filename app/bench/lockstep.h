@@ -61,7 +61,7 @@ class Lockstep {
   [[nodiscard]] MemoryPort& port() noexcept { return port_; }
 
   /// Sticks of the operator from the next cycle on; none: hands off.
-  void holdSticks(const std::optional<Sticks>& sticks) noexcept { input_.sticks = sticks; }
+  void holdSticks(const std::optional<Sticks>& sticks) noexcept { sticks_ = sticks; }
   /// The operator's program stops, or runs again: heartbeats.
   void silence(bool silent) noexcept { silent_ = silent; }
 
@@ -88,6 +88,7 @@ class Lockstep {
   Time now_{};
   std::int64_t session_{0};  ///< Of the operator who sent the last command; 0: none yet.
   bool silent_{false};
+  std::optional<Sticks> sticks_;
   Time next_heartbeat_{};
   Time next_truth_{};
   Time next_loop_{};

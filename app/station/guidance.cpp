@@ -12,6 +12,7 @@ constexpr double kBelowGround =
 constexpr double kGroundHeight = 0.3;  // [m] no lower for a while and below this: on the ground
 constexpr Duration kNoLowerFor = std::chrono::seconds(2);
 constexpr int kGroundedSamples = 2;
+constexpr Duration kStandsForSure = std::chrono::seconds(10);  // whatever the estimate says
 constexpr double kSmallestDescent = 0.01;  // [m]
 constexpr double kAllTheWay = std::numeric_limits<double>::infinity();
 
@@ -39,7 +40,8 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
       if (!has_flown_) command.action = paced(VehicleAction::kTakeoff, in.now);
       break;
     case Mode::kLand:
-      if (landing_ == Landing::kStopMotors)
+      // A take-off that is broken off before the vehicle says that it flies still lifts off.
+      if (landing_ == Landing::kStopMotors || !has_flown_)
         command.action = paced(VehicleAction::kMotorStop, in.now);
       break;
     default:
@@ -64,13 +66,22 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
   return out;
 }
 
-/// One garbled status line must not end a flight, so standing takes several samples in a row.
+/// One garbled status line must not end a flight, so standing takes several samples in a row; nor a
+/// vehicle that says so while the estimate has it in the air, so there it takes long. One that gave
+/// up flying has landed once it is low for as long.
 void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
   const bool stands = in.vehicle == VehiclePhase::kIdle || in.vehicle == VehiclePhase::kStopped;
   const bool flies = in.vehicle == VehiclePhase::kFlying || in.vehicle == VehiclePhase::kLanding;
   if (flies && in.mode != Mode::kStandby) has_flown_ = true;
-  if (!stands) grounded_samples_ = 0;
+  if (!stands || in.entered) grounded_samples_ = 0;
   if (stands && in.sensors->vehicle.sequence != vehicle_sequence_) ++grounded_samples_;
+  if (flies || in.entered) not_flying_since_ = in.now;
+  const bool in_the_air =
+      in.estimate.usable() &&
+      in.estimate.p_WD.y() - config_.home_position_m.y() > kGroundHeight;
+  const bool for_long = in.now - not_flying_since_ > kStandsForSure;
+  stands_ = grounded_samples_ >= kGroundedSamples && (!in_the_air || for_long);
+  gave_up_ = in.vehicle == VehiclePhase::kFault && !in_the_air && for_long;
   vehicle_sequence_ = in.sensors->vehicle.sequence;
 }
 
@@ -88,6 +99,8 @@ void Guidance::enter(const GuidanceInput& in) noexcept {
       break;
     case Mode::kTakeoff:
       path_.begin(aboveHome(config_.takeoff_height_m));
+      // A vehicle that is lost sight of in its take-off goes on up to about there.
+      p_AD_ = aboveHome(config_.takeoff_height_m) - contacts_.anchor().p_WA;
       break;
     case Mode::kLand:
       landing_ = contacts_.contactCount() > 0 ? Landing::kRetrace : Landing::kApproach;
@@ -197,7 +210,8 @@ void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcep
 
 bool Guidance::onGround(const GuidanceInput& in) noexcept {
   const double height = in.estimate.p_WD.y() - config_.home_position_m.y();
-  if (height < lowest_ - kSmallestDescent) {
+  // One that stands still comes no lower either.
+  if (height < lowest_ - kSmallestDescent || in.conditions.any(kStandStill)) {
     lowest_ = height;
     lowest_since_ = in.now;
   }
@@ -227,7 +241,8 @@ bool Guidance::goingBack() const noexcept {
 void Guidance::recordFlight(const GuidanceInput& in) noexcept {
   constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
                                         Condition::kTetherBroken};
-  if (!in.estimate.usable() || in.mode == Mode::kDescend) return;
+  const bool blind = !in.estimate.usable() || in.conditions.any(kStandStill);
+  if (blind || in.mode == Mode::kDescend) return;
   p_AD_ = in.estimate.p_WD - contacts_.anchor().p_WA;
   if (in.mode == Mode::kTakeoff) return;
   if (goingBack()) {
@@ -268,9 +283,8 @@ ConditionSet Guidance::conditions() const noexcept {
   set.set(Condition::kAtTarget,
           (back && completed) || (mode_ == Mode::kTakeoff && under_way_ &&
                                   executor_.status().distance < config_.takeoff_radius_m));
-  const bool stands = grounded_samples_ >= kGroundedSamples;
   // A take-off that never left the ground ends there too.
-  set.set(Condition::kTouchdown, stands && (has_flown_ || mode_ == Mode::kLand));
+  set.set(Condition::kTouchdown, (stands_ || gave_up_) && (has_flown_ || mode_ == Mode::kLand));
   set.set(Condition::kMissionDone, mode_ == Mode::kAuto && completed);
   set.set(Condition::kMissionFailed, routeFailed() || (back && !path_.known()));
   set.set(Condition::kNoWayBack, isIn(mode_, kFlyingModes) && !path_.known());

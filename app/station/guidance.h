@@ -23,6 +23,15 @@ namespace tautline {
 
 struct GuidanceConfig;
 
+/// Nobody hears the rates.
+inline constexpr ConditionSet kUnheard{Condition::kLinkLost, Condition::kVehicleStale};
+/// While one of these counts the drone stands still in every mode but DESCEND.
+inline constexpr ConditionSet kStandStill =
+    kUnheard | ConditionSet{Condition::kReelStale,   Condition::kReelStuck,
+                            Condition::kReelJump,    Condition::kAnglesStale,
+                            Condition::kAnglesStuck, Condition::kAnglesJump,
+                            Condition::kLocalizationLost};
+
 struct GuidanceInput {
   Time now{};
   Duration dt{};
@@ -94,6 +103,9 @@ class Guidance {
   bool under_way_{false};    ///< The mode's route has been started.
   bool has_flown_{false};    ///< Since arming.
   int grounded_samples_{0};  ///< Vehicle status samples in a row that say that it stands.
+  Time not_flying_since_{};  ///< The vehicle has said nothing of flying.
+  bool stands_{false};       ///< On the ground, motors off, as far as can be told.
+  bool gave_up_{false};      ///< On the ground in a fault of the vehicle.
   std::uint32_t vehicle_sequence_{0};
   Landing landing_{Landing::kApproach};
   double lowest_{0.0};   ///< Least height above home while descending [m].

@@ -156,17 +156,11 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
 /// come down without them; none on the ground; no way outwards at the end of the tether, or where
 /// it pulls too hard or hangs.
 VehicleCommand Station::override(const VehicleCommand& gated) noexcept {
-  constexpr ConditionSet kUnheard{Condition::kLinkLost, Condition::kVehicleStale};
-  constexpr ConditionSet kBlind =
-      kUnheard | ConditionSet{Condition::kReelStale,       Condition::kReelStuck,
-                              Condition::kReelJump,        Condition::kAnglesStale,
-                              Condition::kAnglesStuck,     Condition::kAnglesJump,
-                              Condition::kLocalizationLost};
   constexpr ConditionSet kNoPayOut{Condition::kOverTension, Condition::kReelLimit,
                                    Condition::kTetherSlack};
   const Mode mode = out_.supervision.mode;
   // A descent does not ask the tether where it is.
-  const ConditionSet stand_still = mode == Mode::kDescend ? kUnheard : kBlind;
+  const ConditionSet stand_still = mode == Mode::kDescend ? kUnheard : kStandStill;
   if (isIn(mode, kFlyingModes) && !out_.conditions.any(stand_still)) {
     VehicleCommand allowed = gated;
     if (out_.conditions.any(kNoPayOut)) allowed.length_rate = std::min(allowed.length_rate, 0.0);
