@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "supervision/operator_command.h"
 #include "app/station/telemetry.h"
 #include "common/time.h"
 #include "sim_hil/fault_schedule.h"
+#include "supervision/operator_command.h"
 
 namespace tautline::bench {
 

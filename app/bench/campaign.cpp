@@ -204,12 +204,8 @@ FlightCase flightOf(const Campaign& campaign, const CampaignCase& c) {
   flight.limits.end = first.owed.end;
   flight.limits.landed = first.landed;
   if (phase.ask != Request::kNone)
-    flight.script.push_back({{Phase::Kind::kMode, Mode::kAuto, {}},
-                             false,
-                             phase.ask_at,
-                             phase.ask,
-                             kAskAgain,
-                             {}});
+    flight.script.push_back(
+        {{Phase::Kind::kMode, Mode::kAuto, {}}, false, phase.ask_at, phase.ask, kAskAgain, {}});
   const auto add = [&](const CampaignRow& row, Duration at) {
     FaultPlan plan{{Phase::Kind::kMode, phase.mode, {}}, row.fault};
     plan.fault.at = Time{} + at;

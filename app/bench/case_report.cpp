@@ -111,7 +111,8 @@ void writeJunit(const std::string& path, const std::string& suite,
     xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", xmlText(suite),
                        xmlText(fmt::format("{} seed {}", r.name, r.seed)), r.wall_s);
     xml += r.passed() ? "/>\n"
-                      : fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", xmlText(r.failure));
+                      : fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n",
+                                    xmlText(r.failure));
   }
   writeFileAtomically(path, xml + "</testsuite>\n");
 }
@@ -122,8 +123,6 @@ void writeJson(const std::string& path, const std::vector<CaseResult>& results) 
   writeFileAtomically(path, text + "\n]\n");
 }
 
-bool noneFailed(const std::vector<CaseResult>& results) {
-  return failedOf(results) == 0;
-}
+bool noneFailed(const std::vector<CaseResult>& results) { return failedOf(results) == 0; }
 
 }  // namespace tautline::bench

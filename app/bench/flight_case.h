@@ -111,7 +111,7 @@ struct FlightCase {
 };
 
 /// Reading of names. All throw InputError that lists what there is.
-[[nodiscard]] ModeSet readModes(TomlTable& table, const char* key);  ///< Separated by blanks.
+[[nodiscard]] ModeSet readModes(TomlTable& table, const char* key);    ///< Separated by blanks.
 [[nodiscard]] Request readRequest(TomlTable& table, const char* key);  ///< kNone if missing.
 [[nodiscard]] ConditionSet readConditions(TomlTable& table, const char* key);  ///< The same.
 [[nodiscard]] Phase parsePhase(const TomlTable& table, const std::string& text);

@@ -16,8 +16,8 @@
 #include "common/mission/mission_file.h"
 #include "common/vehicle.h"
 #include "control/motion_executor.h"
-#include "supervision/supervisor.h"
 #include "lcmtypes/channels.h"
+#include "supervision/supervisor.h"
 
 namespace tautline {
 namespace {

@@ -13,7 +13,7 @@ constexpr double kGroundHeight = 0.3;  // [m] no lower for a while and below thi
 constexpr Duration kNoLowerFor = std::chrono::seconds(2);
 constexpr int kGroundedSamples = 2;
 constexpr Duration kStandsForSure = std::chrono::seconds(10);  // whatever the estimate says
-constexpr double kSmallestDescent = 0.01;  // [m]
+constexpr double kSmallestDescent = 0.01;                      // [m]
 constexpr double kAllTheWay = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -77,8 +77,7 @@ void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
   if (stands && in.sensors->vehicle.sequence != vehicle_sequence_) ++grounded_samples_;
   if (flies || in.entered) not_flying_since_ = in.now;
   const bool in_the_air =
-      in.estimate.usable() &&
-      in.estimate.p_WD.y() - config_.home_position_m.y() > kGroundHeight;
+      in.estimate.usable() && in.estimate.p_WD.y() - config_.home_position_m.y() > kGroundHeight;
   const bool for_long = in.now - not_flying_since_ > kStandsForSure;
   stands_ = grounded_samples_ >= kGroundedSamples && (!in_the_air || for_long);
   gave_up_ = in.vehicle == VehiclePhase::kFault && !in_the_air && for_long;

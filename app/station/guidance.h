@@ -27,9 +27,9 @@ struct GuidanceConfig;
 inline constexpr ConditionSet kUnheard{Condition::kLinkLost, Condition::kVehicleStale};
 /// While one of these counts the drone stands still in every mode but DESCEND.
 inline constexpr ConditionSet kStandStill =
-    kUnheard | ConditionSet{Condition::kReelStale,   Condition::kReelStuck,
-                            Condition::kReelJump,    Condition::kAnglesStale,
-                            Condition::kAnglesStuck, Condition::kAnglesJump,
+    kUnheard | ConditionSet{Condition::kReelStale,       Condition::kReelStuck,
+                            Condition::kReelJump,        Condition::kAnglesStale,
+                            Condition::kAnglesStuck,     Condition::kAnglesJump,
                             Condition::kLocalizationLost};
 
 struct GuidanceInput {

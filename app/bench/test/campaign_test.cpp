@@ -168,12 +168,19 @@ TEST_F(CampaignTable, HasEveryKindOfTheMenuThatTheBenchCanFly) {
 
 TEST_F(CampaignTable, EveryConditionOfTheFailsafeTableHasAScenario) {
   // Checks before the flight, and what no lock-step flight has: a host, LCM, a recorder.
-  const ConditionSet elsewhere{
-      Condition::kVehicleFlying,     Condition::kNoOperator,        Condition::kLinkFault,
-      Condition::kLoopJitter,        Condition::kRealTimeMissing,   Condition::kLogOff,
-      Condition::kDiskLow,           Condition::kConfigBad,         Condition::kLengthUncalibrated,
-      Condition::kAzimuthUncalibrated, Condition::kSimMismatch,     Condition::kFaultLatched,
-      Condition::kTeleopStale};
+  const ConditionSet elsewhere{Condition::kVehicleFlying,
+                               Condition::kNoOperator,
+                               Condition::kLinkFault,
+                               Condition::kLoopJitter,
+                               Condition::kRealTimeMissing,
+                               Condition::kLogOff,
+                               Condition::kDiskLow,
+                               Condition::kConfigBad,
+                               Condition::kLengthUncalibrated,
+                               Condition::kAzimuthUncalibrated,
+                               Condition::kSimMismatch,
+                               Condition::kFaultLatched,
+                               Condition::kTeleopStale};
   ConditionSet expected;
   for (const fs::directory_entry& entry : fs::directory_iterator(kScenarios)) {
     if (!entry.path().string().ends_with(".scenario.toml")) continue;
@@ -181,8 +188,8 @@ TEST_F(CampaignTable, EveryConditionOfTheFailsafeTableHasAScenario) {
       if (e.kind == Expectation::Kind::kCondition) expected = expected | e.conditions;
     }
   }
-  const ConditionSet owed = conditionsOf(ConditionKind::kForbidsArming) |
-                            conditionsOf(ConditionKind::kInFlight);
+  const ConditionSet owed =
+      conditionsOf(ConditionKind::kForbidsArming) | conditionsOf(ConditionKind::kInFlight);
   EXPECT_EQ(describe(owed.without(expected | elsewhere)), "");
 }
 

@@ -23,8 +23,8 @@ constexpr ConditionSet kAlarms =
         .without(ConditionSet{C::kVehicleFlying, C::kNoOperator, C::kTensionUnobservable,
                               C::kElevationHigh});
 
-/// Everything that counted while the motors were on, and the first alarm for whoever has to find out
-/// why.
+/// Everything that counted while the motors were on, and the first alarm for whoever has to find
+/// out why.
 struct Seen {
   ConditionSet counted;
   std::string first_alarm;
@@ -36,9 +36,10 @@ struct Seen {
     const ConditionSet alarms = out.conditions & kAlarms;
     if (alarms.empty() || !first_alarm.empty()) return;
     std::ostringstream text;
-    text << describe(alarms) << " at " << toSeconds(bench.now().time_since_epoch()) << " s, waypoint "
-         << out.mission.waypoint << ", contact " << out.contact_id << ", estimate "
-         << out.estimate.p_WD.transpose() << ", truth " << bench.truth().p_WD.transpose();
+    text << describe(alarms) << " at " << toSeconds(bench.now().time_since_epoch())
+         << " s, waypoint " << out.mission.waypoint << ", contact " << out.contact_id
+         << ", estimate " << out.estimate.p_WD.transpose() << ", truth "
+         << bench.truth().p_WD.transpose();
     for (const ConditionInfo& info : kConditionInfos) {
       if (alarms.has(info.condition))
         text << ", " << out.findings.valueOf(info.condition) << " of "

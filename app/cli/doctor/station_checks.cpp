@@ -23,12 +23,12 @@
 #include "app/station/station_config.h"
 #include "common/clock.h"
 #include "common/multicast.h"
-#include "supervision/supervisor.h"
 #include "drivers/can_socket.h"
 #include "drivers/serial_holder.h"
 #include "drivers/serial_port.h"
 #include "drivers/tautline_device.h"
 #include "lcmtypes/channels.h"
+#include "supervision/supervisor.h"
 
 namespace tautline::cli {
 namespace {
