@@ -23,9 +23,9 @@ expect() {
 
 bench=$bin/tautline-bench
 sim=$bin/tautline-sim
-expect 0 '2 passed, 0 failed' "$bench" scenario config/scenarios --case 'encoder*' --iterations 2 --junit "$work/junit.xml" --log "$work"
+expect 0 '2 passed, 0 failed' "$bench" scenario config/scenarios --case "encoder stale" --iterations 2 --junit "$work/junit.xml" --log "$work"
 grep -q 'tests="2" failures="0"' "$work/junit.xml" || { echo "FAILED: $(cat "$work/junit.xml")"; failed=$((failed + 1)); }
-[[ -s $work/encoder_off_2.lcm ]] || { echo "FAILED: no log"; failed=$((failed + 1)); }
+[[ -s $work/encoder_stale_2.lcm ]] || { echo "FAILED: no log"; failed=$((failed + 1)); }
 expect 1 'no scenario is named "nothing"' "$bench" scenario config/scenarios --case nothing
 expect 1 'no case is chosen' "$bench" safety --case nothing
 expect 5 'nowhere' "$bench" scenario nowhere.scenario.toml
@@ -47,7 +47,7 @@ expect 2 'allowed: ok, off' "$sim" --check-config --fault 'encoder snag 1'
 expect 5 'has no such bus' "$sim" --check-config --fault 'bus crc 1'
 expect 5 'is not in the machine' "$sim" --check-config --fault 'loop delayed 1'
 expect 0 'is right' "$sim" --check-config --fault 'encoder stuck 10 5' --fault 'tether snag 20'
-expect 5 'phase "AUTO"' "$sim" --check-config --scenario config/scenarios/encoder_off.scenario.toml
+expect 5 'phase "AUTO"' "$sim" --check-config --scenario config/scenarios/encoder_stale.scenario.toml
 
 [[ $failed == 0 ]] && echo "all as expected"
 exit $((failed > 0))
