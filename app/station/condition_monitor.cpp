@@ -173,14 +173,12 @@ void ConditionMonitor::watchVehicle(const MonitorInput& in) noexcept {
   if (f.vehicle.valid && f.vehicle.value.backup_battery_voltage > 0.0)
     backup = f.vehicle.value.backup_battery_voltage;
   power_.update(battery, backup, findings_);
-  if (f.vehicle.sequence > 0) {
-    ConditionSet said = conditionsOf(f.vehicle.value);
-    // Motors that stop at the end of a landing were told to.
-    const bool landing = isIn(in.mode, maskOf({Mode::kLand, Mode::kDescend}));
-    if (landing && f.vehicle.value.phase == VehiclePhase::kStopped)
-      said.set(C::kVehicleFault, false);
-    findings_.raised = findings_.raised | said;
-  }
+  if (f.vehicle.sequence > 0) findings_.raised = findings_.raised | conditionsOf(f.vehicle.value);
+  // Motors that stop without being told to; at the end of a landing they are.
+  constexpr ModeMask kMotorsWanted = maskOf(
+      {Mode::kHold, Mode::kTeleop, Mode::kAuto, Mode::kFailsafe, Mode::kBackUp, Mode::kReturn});
+  if (isIn(in.mode, kMotorsWanted) && f.vehicle.value.phase == VehiclePhase::kStopped)
+    findings_.raised.set(C::kVehicleFault);
   findings_.report(C::kVehicleFlying, isFlying(f));
 }
 

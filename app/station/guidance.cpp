@@ -51,7 +51,8 @@ GuidanceOutput Guidance::update(const GuidanceInput& in) noexcept {
   // Once it has flown it counts as airborne until it says that it stands: a fault in the air is no
   // touch-down.
   command.reel_controller = has_flown_;
-  if (!has_flown_) return out;
+  // While it says that it stands, nothing winds the reel, whatever the estimate says.
+  if (!has_flown_ || grounded_samples_ >= kGroundedSamples) return out;
 
   if (!flyByRates(in, command)) {
     fly(in);

@@ -123,8 +123,9 @@ TEST(OperatorFlight, AMissionGoesOnWithoutItsOperator) {
   flight.bench->silence(true);
   flight.wait(seconds(12));
   EXPECT_TRUE(flight.has(Condition::kNoOperator));
-  EXPECT_TRUE(flight.until(Mode::kHold, seconds(300)));
+  EXPECT_TRUE(flight.until(Mode::kReturn, seconds(300))) << "nobody is there to bring it home";
   EXPECT_EQ(flight.bench->output().mission.state, MissionState::kCompleted);
+  EXPECT_TRUE(flight.until(Mode::kStandby, seconds(300)));
 }
 
 TEST(OperatorFlight, OrHoldsWhereThatIsConfigured) {
