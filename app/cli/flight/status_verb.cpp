@@ -9,9 +9,9 @@
 #include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
-#include "app/cli/flight/vehicle_flags.h"
 #include "app/cli/flight/verbs.h"
 #include "app/station/events.h"
+#include "app/station/vehicle_signs.h"
 #include "common/estimate.h"
 #include "common/vehicle.h"
 
@@ -85,6 +85,20 @@ const char* runModeOf(const StationClient::View& v) {
   return nameOf(static_cast<RunMode>(v.state->run_mode), kRunModeNames);
 }
 
+/// Flags that are set, by name.
+std::vector<std::string> flagNames(const tautline::vehicle_state_t& v) {
+  std::vector<std::string> names;
+  for (const VehicleSign& flag : flagsOf(static_cast<VehicleProtocol>(v.protocol)))
+    if ((v.flags & flag.code) != 0) names.emplace_back(flag.name);
+  return names;
+}
+/// Name of the flight mode, or its number where the table does not have it.
+std::string flightModeOf(const tautline::vehicle_state_t& v) {
+  for (const VehicleSign& mode : modesOf(static_cast<VehicleProtocol>(v.protocol)))
+    if (mode.code == v.flight_mode) return mode.name;
+  return fmt::format("mode {}", v.flight_mode);
+}
+
 json linkOf(const tautline::vehicle_state_t& v) {
   return {{"place", v.link_place},
           {"connected", v.link_connected != 0},
@@ -130,7 +144,8 @@ json toJson(const StationClient& client) {
           {"tether_length_m", v.tether->length_free_m + v.tether->length_static_m},
           {"tension_n", v.tether->tension_n},
           {"vehicle", phaseOf(v)},
-          {"vehicle_flags", flagNames(v)},
+          {"vehicle_mode", flightModeOf(*v.vehicle)},
+          {"vehicle_flags", flagNames(*v.vehicle)},
           {"battery_v", v.vehicle->ground_battery_v},
           {"link_fault", nameOf(static_cast<LinkFault>(v.vehicle->link_fault), kLinkFaultNames)},
           {"link", linkOf(*v.vehicle)}};
@@ -174,9 +189,12 @@ std::string toText(const StationClient& client) {
   row("tether", fmt::format("{:.2f} m out, {:.2f} N, {} contact(s)",
                             v.tether->length_free_m + v.tether->length_static_m,
                             v.tether->tension_n, v.tether->contact_count));
-  row("vehicle",
-      fmt::format("{}, ground battery {:.1f} V", phaseOf(v), v.vehicle->ground_battery_v));
-  if (v.vehicle->flags != 0) row("flags", fmt::format("{}", fmt::join(flagNames(v), " ")));
+  row("vehicle", fmt::format("{} ({}), ground battery {:.1f} V", phaseOf(v),
+                             flightModeOf(*v.vehicle), v.vehicle->ground_battery_v));
+  for (const VehicleSign& flag : flagsOf(static_cast<VehicleProtocol>(v.vehicle->protocol))) {
+    if ((v.vehicle->flags & flag.code) == 0) continue;
+    row("flag", fmt::format("{}: {}; {}", flag.name, flag.text, flag.remedy));
+  }
   return text;
 }
 
@@ -203,8 +221,7 @@ ExitCode run(const Options& options, double wait_s, bool watching) {
   StationClient client(options.lcm_url, Role::kListener);
   const auto& v = client.view();
   const auto complete = [&] {
-    return v.state && v.estimate && v.tether && v.vehicle && v.authority && v.safety &&
-           (v.vehicle->flags == 0 || v.params);  // whose flags they are
+    return v.state && v.estimate && v.tether && v.vehicle && v.authority && v.safety;
   };
   const auto enough = [&] { return v.state && v.estimate && v.tether && v.vehicle; };
   if (!client.waitUntil(complete, milliseconds(static_cast<std::int64_t>(wait_s * 1000.0))) &&
