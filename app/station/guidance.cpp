@@ -242,9 +242,8 @@ void Guidance::recordFlight(const GuidanceInput& in) noexcept {
   constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
                                         Condition::kTetherBroken};
   const bool blind = !in.estimate.usable() || in.conditions.any(kStandStill);
-  if (blind || in.mode == Mode::kDescend) return;
+  if (blind || isIn(in.mode, maskOf({Mode::kTakeoff, Mode::kDescend}))) return;
   p_AD_ = in.estimate.p_WD - contacts_.anchor().p_WA;
-  if (in.mode == Mode::kTakeoff) return;
   if (goingBack()) {
     path_.cutAfter(executor_.status().waypoint);
   } else {
