@@ -6,33 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
+#include "common/markup.h"
 #include "common/toml/toml_writer.h"
 
 namespace tautline::bench {
 namespace {
-
-std::string xmlText(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 template <class Enum, class Names>
 Enum valueOf(const std::string& name, const Names& names) {
@@ -106,13 +84,13 @@ void writeJunit(const std::string& path, const std::string& suite,
   std::string xml = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\">\n",
-      xmlText(suite), results.size(), failedOf(results));
+      escaped(suite), results.size(), failedOf(results));
   for (const CaseResult& r : results) {
-    xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", xmlText(suite),
-                       xmlText(fmt::format("{} seed {}", r.name, r.seed)), r.wall_s);
+    xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", escaped(suite),
+                       escaped(fmt::format("{} seed {}", r.name, r.seed)), r.wall_s);
     xml += r.passed() ? "/>\n"
                       : fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n",
-                                    xmlText(r.failure));
+                                    escaped(r.failure));
   }
   writeFileAtomically(path, xml + "</testsuite>\n");
 }

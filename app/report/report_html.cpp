@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/report/report_text.h"
+#include "common/markup.h"
 
 namespace tautline::report {
 namespace {
@@ -32,29 +33,6 @@ figcaption { color: #666; font-size: 0.9em; }
 .error td, .critical td { background: #fbeae0; }
 .warning td { background: #fdf5e0; }
 )";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
 
 std::string show(const std::optional<double>& value, int digits, const char* unit,
                  double factor = 1.0) {

@@ -1,7 +1,6 @@
 /// @file
 /// `tautline status`: what the station is doing, why, and what keeps it on the ground.
 
-#include <csignal>
 #include <memory>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/flight/verbs.h"
+#include "app/cli/termination.h"
 #include "app/station/events.h"
 #include "app/station/vehicle_signs.h"
 #include "common/estimate.h"
@@ -23,8 +23,6 @@ using std::chrono::milliseconds;
 
 constexpr const char* kName = "status";
 constexpr ConditionSet kArmingChecks = conditionsOf(ConditionKind::kForbidsArming);
-
-volatile std::sig_atomic_t stop_watching = 0;
 
 /// What keeps the station from arming. A free lease does not: `arm` takes it.
 ConditionSet blockers(const StationClient::View& v) {
@@ -200,19 +198,18 @@ std::string toText(const StationClient& client) {
 
 /// Rewrites the screen twice a second until Ctrl-C.
 ExitCode watch(StationClient& client) {
-  std::signal(SIGINT, [](int) { stop_watching = 1; });
-  std::signal(SIGTERM, [](int) { stop_watching = 1; });
+  endOnSignals();
   constexpr const char* kHome = "\033[H";
   constexpr const char* kClearLine = "\033[K";
   constexpr const char* kClearRest = "\033[J";
   fmt::print("\033[2J");
-  while (stop_watching == 0) {
+  while (!termination_requested) {
     std::string screen = kHome;
     for (const char c : toText(client))
       screen += c == '\n' ? kClearLine + std::string("\n") : std::string(1, c);
     fmt::print("{}{}", screen, kClearRest);
     std::fflush(stdout);
-    client.waitUntil([] { return stop_watching != 0; }, milliseconds(500));
+    client.waitUntil([] { return termination_requested.load(); }, milliseconds(500));
   }
   return ExitCode::kOk;
 }

@@ -53,9 +53,7 @@ class Subscriber {
 tautline::log_status_t statusOf(const FlightRecorder& recorder, const std::string& folder) {
   constexpr std::int64_t kRoomForAFlight = 200'000'000;
   tautline::log_status_t m{};
-  m.utime = std::chrono::duration_cast<std::chrono::microseconds>(
-                std::chrono::system_clock::now().time_since_epoch())
-                .count();
+  m.utime = toMicroseconds(monotonicNow() + unixOffset());
   m.recording = recorder.diskFull() ? 0 : 1;
   const std::string file = recorder.file().string();
   std::copy_n(file.begin(), std::min(file.size(), sizeof m.file - 1), m.file);
