@@ -21,6 +21,7 @@ MAY_INCLUDE = {
     "sim_hil": ["common", "lcmtypes", "drivers/fotokite_protocol.h", "drivers/tautline_protocol.h"],
     "app": ["common", "lcmtypes", "drivers", "estimation", "control", "supervision"],
     "app/bench": PROJECT,
+    "app/experiments": PROJECT,
 }
 
 # Third-party headers that only the named folders may use; everything that is not listed here is free to all but common.

@@ -19,6 +19,7 @@
 #include "app/bench/replay.h"
 #include "app/bench/safety_command.h"
 #include "app/bench/scenario_command.h"
+#include "app/experiments/experiments_command.h"
 #include "app/station/recording.h"
 #include "app/version.h"
 #include "common/clock.h"
@@ -202,6 +203,7 @@ int main(int argc, char** argv) {
   addReplay(app, options, result);
   bench::addScenarioCommand(app, result);
   bench::addSafetyCommand(app, result);
+  experiments::addExperimentsCommand(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -13,10 +13,9 @@
 #include <CLI/Formatter.hpp>
 #include <fmt/format.h>
 
+#include "app/bench/case_batch.h"
 #include "app/bench/case_report.h"
 #include "app/bench/log_sink.h"
-#include "app/bench/worker_pool.h"
-#include "common/clock.h"
 
 namespace tautline::bench {
 namespace {
@@ -85,18 +84,17 @@ std::string logName(const FlightCase& flight) {
 ExitCode flyScenarios(const Options& o) {
   const std::vector<Run> runs = select(o);
   if (!o.log.empty()) fs::create_directories(o.log);
-  PoolJob job;
-  job.count = runs.size();
-  job.workers = o.jobs;
-  job.name = [&](std::size_t i) { return runs[i].flight.name; };
-  job.fly = [&](std::size_t i) {
-    const FlightCase& flight = runs[i].flight;
-    const auto sink =
-        o.log.empty() ? nullptr : std::make_unique<LogSink>(fs::path(o.log) / logName(flight));
-    return runCase(flight, sink.get());
-  };
-  const Time began = monotonicNow();
-  const std::vector<CaseResult> results = flyAll(job);
+  CaseBatch batch;
+  batch.count = runs.size();
+  batch.workers = o.jobs;
+  batch.flight = [&](std::size_t i) { return runs[i].flight; };
+  if (!o.log.empty()) {
+    batch.sink = [&](const FlightCase& flight) {
+      return std::make_unique<LogSink>(fs::path(o.log) / logName(flight));
+    };
+  }
+  const CaseBatchResult flown = flyCases(batch);
+  const std::vector<CaseResult>& results = flown.cases;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const CaseResult& r = results[i];
     if (o.json) {
@@ -112,7 +110,7 @@ ExitCode flyScenarios(const Options& o) {
                      : fmt::format(", crash: {}", nameOf(r.crash, sim::kCrashReasonNames)));
     }
   }
-  if (!o.json) fmt::print("{}\n", summary(results, toSeconds(monotonicNow() - began)));
+  if (!o.json) fmt::print("{}\n", summary(results, flown.wall_s));
   if (!o.junit.empty()) writeJunit(o.junit, "scenarios", results);
   return noneFailed(results) ? ExitCode::kOk : ExitCode::kFailed;
 }

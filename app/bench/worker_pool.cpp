@@ -9,13 +9,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <exception>
-#include <optional>
+#include <memory>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
-
-#include "app/bench/case_report.h"
 
 namespace tautline::bench {
 namespace {
@@ -24,7 +23,16 @@ namespace {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// A process that flies cases `next`, `next + stride`, … and says what came of each in a line.
+/// First character of a worker's line.
+constexpr char kDone = '+';
+constexpr char kFailed = '-';
+
+std::string oneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+/// A process that runs jobs `next`, `next + stride`, … and says what came of each in a line.
 class Worker {
  public:
   Worker(const PoolJob& job, std::size_t first, std::size_t stride)
@@ -38,35 +46,32 @@ class Worker {
   [[nodiscard]] bool done() const noexcept { return next_ >= job_.count; }
   [[nodiscard]] int descriptor() const noexcept { return input_; }
 
-  /// Takes what the process has said; calls `take(index, result)` for each case.
-  template <class Take>
-  void listen(const Take& take) {
+  /// Takes what the process has said.
+  void listen() {
     std::array<char, 4096> buffer;
     const ssize_t count = ::read(input_, buffer.data(), buffer.size());
     if (count < 0 && errno == EINTR) return;
     if (count > 0) {
       text_.append(buffer.data(), static_cast<std::size_t>(count));
       for (std::size_t end = text_.find('\n'); end != std::string::npos; end = text_.find('\n')) {
-        answered(caseFromJson(text_.substr(0, end)), take);
+        const std::string said = text_.substr(1, end - 1);
+        answered(text_.front() == kDone ? JobOutcome{said, {}} : JobOutcome{{}, said});
         text_.erase(0, end + 1);
       }
       return;
     }
     const int status = finish();
     if (done()) return;
-    CaseResult dead;
-    dead.name = job_.name(next_);
-    dead.failure = WIFSIGNALED(status)
-                       ? fmt::format("the process was ended by signal {}", WTERMSIG(status))
-                       : fmt::format("the process ended with code {}", WEXITSTATUS(status));
-    answered(dead, take);
+    answered({{},
+              WIFSIGNALED(status)
+                  ? fmt::format("the process was ended by signal {}", WTERMSIG(status))
+                  : fmt::format("the process ended with code {}", WEXITSTATUS(status))});
     if (!done()) start();
   }
 
  private:
-  template <class Take>
-  void answered(const CaseResult& result, const Take& take) {
-    take(next_, result);
+  void answered(const JobOutcome& outcome) {
+    if (job_.each) job_.each(next_, outcome);
     next_ += stride_;
   }
 
@@ -88,14 +93,12 @@ class Worker {
 
   [[noreturn]] void work(int output) {
     for (std::size_t i = next_; i < job_.count; i += stride_) {
-      CaseResult result;
+      std::string line;
       try {
-        result = job_.fly(i);
+        line = kDone + oneLine(job_.run(i)) + '\n';
       } catch (const std::exception& e) {
-        result.name = job_.name(i);
-        result.failure = e.what();
+        line = kFailed + oneLine(e.what()) + '\n';
       }
-      const std::string line = toJson(result) + "\n";
       for (std::size_t sent = 0; sent < line.size();) {
         const ssize_t count = ::write(output, line.data() + sent, line.size() - sent);
         if (count < 0 && errno != EINTR) ::_exit(1);
@@ -125,18 +128,13 @@ class Worker {
 
 }  // namespace
 
-std::vector<CaseResult> flyAll(const PoolJob& job) {
-  std::vector<CaseResult> results(job.count);
+void runAll(const PoolJob& job) {
   const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t stride =
       std::min(job.count, job.workers > 0 ? static_cast<std::size_t>(job.workers) : processors);
   std::vector<std::unique_ptr<Worker>> workers;
   for (std::size_t k = 0; k < stride; ++k)
     workers.push_back(std::make_unique<Worker>(job, k, stride));
-  const auto take = [&](std::size_t index, const CaseResult& result) {
-    results[index] = result;
-    if (job.each_result) job.each_result(result);
-  };
   for (;;) {
     std::vector<pollfd> waiting;
     std::vector<Worker*> owners;
@@ -145,10 +143,10 @@ std::vector<CaseResult> flyAll(const PoolJob& job) {
       waiting.push_back({worker->descriptor(), POLLIN, 0});
       owners.push_back(worker.get());
     }
-    if (waiting.empty()) return results;
+    if (waiting.empty()) return;
     if (::poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) fail("poll");
     for (std::size_t i = 0; i < waiting.size(); ++i) {
-      if (waiting[i].revents != 0) owners[i]->listen(take);
+      if (waiting[i].revents != 0) owners[i]->listen();
     }
   }
 }

@@ -1,27 +1,31 @@
 #pragma once
 
 /// @file
-/// Flies many cases on all processors, each worker a process of its own: a case that kills its
-/// process is a failed case, and the others go on.
+/// Many independent jobs on all processors, each worker a process of its own: a job that kills its
+/// process is a failed job, and the others go on. Not real-time safe.
 
 #include <cstddef>
 #include <functional>
 #include <string>
-#include <vector>
-
-#include "app/bench/case_runner.h"
 
 namespace tautline::bench {
 
-struct PoolJob {
-  std::size_t count{0};                                ///< Cases 0 … count - 1.
-  int workers{0};                                      ///< 0: one for each processor.
-  std::function<CaseResult(std::size_t)> fly;          ///< In a worker.
-  std::function<std::string(std::size_t)> name;        ///< Of a case that has killed its worker.
-  std::function<void(const CaseResult&)> each_result;  ///< As they come; may be empty.
+/// What came of a job: the line that it returned, or why there is none.
+struct JobOutcome {
+  std::string line;
+  std::string failure;  ///< Its exception's text, or how its process ended; empty: none.
 };
 
-/// Results in the order of the cases. Throws std::system_error if processes cannot be made.
-[[nodiscard]] std::vector<CaseResult> flyAll(const PoolJob& job);
+struct PoolJob {
+  std::size_t count{0};  ///< Jobs 0 … count - 1.
+  int workers{0};        ///< 0: one for each processor.
+  /// In a worker process. One line: nothing after a line feed counts.
+  std::function<std::string(std::size_t)> run;
+  /// In the calling process, as they come.
+  std::function<void(std::size_t, const JobOutcome&)> each;
+};
+
+/// Returns when all jobs are done. Throws std::system_error if processes cannot be made.
+void runAll(const PoolJob& job);
 
 }  // namespace tautline::bench

@@ -9,6 +9,7 @@
 
 #include "app/report/analysis.h"
 #include "app/report/flight_log.h"
+#include "app/report/html.h"
 
 namespace tautline::report {
 
@@ -21,13 +22,6 @@ namespace tautline::report {
 
 /// The summary that the command prints.
 [[nodiscard]] std::string summaryText(const FlightLog& log, const FlightAnalysis& flight);
-
-/// A picture that goes into the page.
-struct EmbeddedPicture {
-  std::string name;
-  std::string caption;
-  std::string svg;
-};
 
 /// report.html: one file with everything in it.
 [[nodiscard]] std::string reportHtml(const FlightLog& log, const FlightAnalysis& flight,

@@ -6,14 +6,15 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/bench/batch.h"
 #include "app/bench/case_report.h"
 #include "app/bench/case_runner.h"
-#include "app/bench/worker_pool.h"
 
 namespace tautline::bench {
 namespace {
@@ -208,31 +209,61 @@ TEST_F(CampaignTable, SeedsComeFromTheName) {
   EXPECT_EQ(flightOf(campaign(), cases[0]).bench.seed, flightOf(campaign(), cases[0]).bench.seed);
 }
 
-TEST(WorkerPool, ADeadWorkerIsAFailedCaseAndTheOthersGoOn) {
+TEST(WorkerPool, ADeadWorkerIsAFailedJobAndTheOthersGoOn) {
   PoolJob job;
   job.count = 7;
   job.workers = 2;
-  job.name = [](std::size_t i) { return "case " + std::to_string(i); };
-  job.fly = [](std::size_t i) {
+  job.run = [](std::size_t i) {
     if (i == 2) std::raise(SIGABRT);
     if (i == 5) throw InputError({.problem = "bad"});
-    CaseResult r;
-    r.name = "case " + std::to_string(i);
-    r.flight_s = static_cast<double>(i);
-    return r;
+    return "job " + std::to_string(i);
   };
-  int heard = 0;
-  job.each_result = [&](const CaseResult&) { ++heard; };
-  const auto results = flyAll(job);
-  ASSERT_EQ(results.size(), 7U);
-  EXPECT_EQ(heard, 7);
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    EXPECT_EQ(results[i].name, "case " + std::to_string(i));
-    EXPECT_EQ(results[i].passed(), i != 2 && i != 5);
+  std::map<std::size_t, JobOutcome> heard;
+  job.each = [&](std::size_t i, const JobOutcome& outcome) { heard[i] = outcome; };
+  runAll(job);
+  ASSERT_EQ(heard.size(), 7U);
+  for (const auto& [i, outcome] : heard) {
+    const bool bad = i == 2 || i == 5;
+    EXPECT_EQ(outcome.line, bad ? "" : "job " + std::to_string(i));
+    EXPECT_EQ(outcome.failure.empty(), !bad);
   }
-  EXPECT_NE(results[2].failure.find("signal 6"), std::string::npos);
-  EXPECT_NE(results[5].failure.find("bad"), std::string::npos);
-  EXPECT_EQ(results[6].flight_s, 6.0);
+  EXPECT_NE(heard[2].failure.find("signal 6"), std::string::npos);
+  EXPECT_NE(heard[5].failure.find("bad"), std::string::npos);
+}
+
+TEST(Batch, GoesOnWhereItWasInterrupted) {
+  const fs::path folder = fs::path(::testing::TempDir()) / "tautline_batch";
+  fs::remove_all(folder);
+  Batch batch;
+  batch.keys = {"a", "b", "c"};
+  batch.workers = 1;
+  batch.folder = folder.string();
+  batch.run = [](std::size_t i) -> std::string {
+    if (i == 1) throw InputError({.problem = "not yet"});
+    return "first " + std::to_string(i);
+  };
+  const BatchResult first = runBatch(batch);
+  EXPECT_EQ(first.known, 0U);
+  EXPECT_FALSE(first.outcomes[1].failure.empty());
+  std::ofstream(folder / "results.txt", std::ios::app) << "b\thalf a li";  // killed here
+
+  batch.run = [](std::size_t i) { return "second " + std::to_string(i); };
+  const BatchResult second = runBatch(batch);
+  EXPECT_EQ(second.known, 2U);
+  EXPECT_EQ(second.outcomes[0].line, "first 0");
+  EXPECT_EQ(second.outcomes[1].line, "second 1");
+  EXPECT_EQ(second.outcomes[2].line, "first 2");
+  EXPECT_EQ(runBatch(batch).known, 3U);
+  fs::remove_all(folder);
+}
+
+TEST(Shard, PartsShareTheWhole) {
+  const Shard a = parseShard("1/3");
+  const Shard c = parseShard("3/3");
+  EXPECT_TRUE(a.has(0) && a.has(3) && c.has(2));
+  EXPECT_FALSE(a.has(1) || c.has(0));
+  for (const char* bad : {"", "1", "0/2", "3/2", "1/2x", "a/b"})
+    EXPECT_THROW(static_cast<void>(parseShard(bad)), InputError) << bad;
 }
 
 TEST(CaseReport, JsonComesBackAndJunitIsWritten) {

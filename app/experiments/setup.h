@@ -1,0 +1,40 @@
+#pragma once
+
+/// @file
+/// What all experiments share: one plant, the two stations that are compared on it, and the
+/// published figures (config/experiments). Not real-time safe: start-up only.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "app/bench/lockstep.h"
+#include "app/station/station_config.h"
+#include "common/mission/scene.h"
+#include "sim_hil/sim_config.h"
+
+namespace tautline::experiments {
+
+struct Setup {
+  std::filesystem::path folder;  ///< Of config/experiments.
+  bool quick{false};             ///< Fewer trials: a sample that CI can afford.
+  std::uint64_t seed{1};         ///< Of the first trial; the same for both stations.
+  sim::SimConfig plant;          ///< plant.toml: one for all experiments.
+  StationConfig as_published;    ///< as_published.toml: the dissertation's software.
+  StationConfig tautline;        ///< tautline.toml: ours.
+
+  /// Changes whenever any of this does, or the program.
+  [[nodiscard]] std::string fingerprint() const;
+
+  /// A flight with one of the stations. `world` is in W, with a start.
+  [[nodiscard]] bench::LockstepConfig flight(const StationConfig& station, const Scene& world,
+                                             std::uint64_t trial) const {
+    return {
+        .station = station, .sim = plant, .world = world, .map_known = true, .seed = seed + trial};
+  }
+};
+
+/// Throws InputError.
+[[nodiscard]] Setup loadSetup(const std::filesystem::path& folder, bool quick, std::uint64_t seed);
+
+}  // namespace tautline::experiments
