@@ -1,6 +1,7 @@
 #include "sim_hil/obstacles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -281,6 +282,29 @@ double Obstacles::clearance(const Eigen::Vector3d& p, bool with_room) const noex
     distance = std::fmin(distance, (p - room_.min).cwiseMin(room_.max - p).minCoeff());
   }
   return distance;
+}
+
+double Obstacles::confinement(const Eigen::Vector3d& p, double decay) const noexcept {
+  std::array<double, 6> nearest;  // towards -x, -y, -z, +x, +y, +z
+  nearest.fill(std::numeric_limits<double>::max());
+  nearest[1] = p.y() - floor_;
+  if (has_room_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      double& low = nearest[static_cast<std::size_t>(axis)];
+      low = std::fmin(low, p[axis] - room_.min[axis]);
+      nearest[static_cast<std::size_t>(axis + 3)] = room_.max[axis] - p[axis];
+    }
+  }
+  for (std::size_t i = 0; i < solids_.size(); ++i) {
+    const Eigen::Vector3d way = p.cwiseMax(bounds_[i].min).cwiseMin(bounds_[i].max) - p;
+    Eigen::Index axis = 0;
+    way.cwiseAbs().maxCoeff(&axis);
+    double& side = nearest[static_cast<std::size_t>(axis + (way[axis] > 0.0 ? 3 : 0))];
+    if (way.norm() < side) side = std::fmin(side, signedDistance(solids_[i], p));
+  }
+  double sum = 0.0;
+  for (const double d : nearest) sum += std::exp(-std::fmax(d, 0.0) / decay);
+  return sum;
 }
 
 }  // namespace tautline::sim

@@ -107,6 +107,11 @@ class Obstacles {
   /// if `with_room`.
   [[nodiscard]] double clearance(const Eigen::Vector3d& p, bool with_room) const noexcept;
 
+  /// How much surfaces stand round p: the sum over the six directions of the axes of exp(-d/decay),
+  /// d [m] the distance to the nearest surface on that side: 0 in the open, 1 at a wall, more in a
+  /// corner or a shaft, 6 in a cell. Floor and room count.
+  [[nodiscard]] double confinement(const Eigen::Vector3d& p, double decay) const noexcept;
+
  private:
   void addPrism(const Prism& prism, int obstacle);
 

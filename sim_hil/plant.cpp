@@ -153,9 +153,8 @@ void Plant::stepClock() noexcept {
 
 void Plant::stepAir() noexcept {
   ground_ = obstacles_.groundBelow(truth_.p_WD);
-  const double clearance =
-      std::fmin(obstacles_.clearance(truth_.p_WD, true), truth_.p_WD.y() - obstacles_.floor());
-  wind_.step(kStepsPerAirUpdate * h_, clearance, random_);
+  wind_.step(kStepsPerAirUpdate * h_,
+             obstacles_.confinement(truth_.p_WD, config_.wind.wall_distance), random_);
 }
 
 void Plant::checkCrash(const Eigen::Vector3d& v_before) noexcept {

@@ -19,12 +19,16 @@ void Reel::command(double counts_per_second) noexcept {
 }
 
 void Reel::drive(double metres_per_second) noexcept {
-  commanded_ = std::isnan(metres_per_second) ? 0.0 : metres_per_second * config_.scale;
+  commanded_ = std::isnan(metres_per_second)
+                   ? 0.0
+                   : metres_per_second * metresPerCount() / config_.metres_per_count;
 }
 
 void Reel::step(double h, double tension) noexcept {
   constexpr double kSlipSpeed = 0.5;  // of a drive that gives way, per newton too much [m/s/N]
-  const double asked = disturbance_.rate.value_or(wanted());
+  double asked = disturbance_.rate.value_or(wanted());
+  if (config_.mode == ReelMode::kTension && !locked_)
+    asked += config_.compliance * (tension - config_.tension);
   const double lagged = rate_ + (asked - rate_) * (1.0 - std::exp(-h / std::fmax(config_.lag, h)));
   const double change = config_.max_acceleration * h;
   rate_ = std::clamp(lagged, rate_ - change, rate_ + change);
@@ -39,11 +43,21 @@ void Reel::step(double h, double tension) noexcept {
   if (slip == 0.0 && follows == 1.0) rate_ = (length_ - before) / h;  // an end stop stops the drum
 }
 
-std::int64_t Reel::counts() const noexcept {
-  return std::llround(
-      std::floor((length_ + counted_ - config_.power_on_length) / metresPerCount()));
+double Reel::turned(double length) const noexcept {
+  // d(turned)/d(length) = 1 / (scale (1 - layer length))
+  const double k = config_.layer;
+  return (k > 0.0 ? -std::log1p(-k * length) / k : length) / config_.scale;
 }
 
-double Reel::metresPerCount() const noexcept { return config_.metres_per_count * config_.scale; }
+std::int64_t Reel::counts() const noexcept {
+  const double out = turned(length_ + counted_) - turned(config_.power_on_length);
+  return std::llround(std::floor(out / config_.metres_per_count));
+}
+
+double Reel::metresPerCount() const noexcept {
+  return config_.metres_per_count * config_.scale * (1.0 - config_.layer * length_);
+}
+
+double Reel::scale() const noexcept { return length_ / turned(length_); }
 
 }  // namespace tautline::sim

@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file
-/// The ground station's reel: a drum in rate mode with an encoder.
+/// The ground station's reel: a drum with an encoder, driven at a rate or holding a tension.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -10,7 +11,17 @@
 
 namespace tautline::sim {
 
+/// What the drum does with a commanded rate.
+enum class ReelMode : std::uint8_t {
+  kRate,     ///< Turns at it.
+  kTension,  ///< Turns at it, faster while the tether pulls harder than `tension`, slower while
+             ///< less.
+};
+inline constexpr std::array<EnumName<ReelMode>, 2> kReelModeNames{
+    {{ReelMode::kRate, "rate"}, {ReelMode::kTension, "tension"}}};
+
 struct ReelConfig {
+  ReelMode mode{ReelMode::kRate};
   double metres_per_count{0.00285};  ///< What the device's documentation says.
   double scale{1.0};             ///< True metres per nominal metre: what calibration has to find.
   double power_on_length{0.0};   ///< Tether out when the encoder read 0 [m].
@@ -19,9 +30,14 @@ struct ReelConfig {
   double min_length{0.10};       ///< The end stop [m].
   double max_length{10.0};       ///< All that is on the drum [m].
   double slip_tension{9.0};      ///< The drive gives way above this [N].
+  double tension{1.0};           ///< That kTension holds at the outlet [N].
+  double compliance{0.5};        ///< Its extra rate over the tension's error [m/s/N].
+  double layer{0.0};  ///< Relative loss of metres per count with each metre paid out [1/m]: the
+                      ///< drum gets thinner.
 
   template <class Visitor>
   void fields(Visitor& v) {
+    v.choice("mode", mode, kReelModeNames, "what the drum does with a commanded rate");
     v.field("metres_per_count_m", metres_per_count, Range{1e-5, 0.1}, "nominal encoder resolution");
     v.field("scale", scale, Range{0.5, 2.0}, "true metres per nominal metre");
     v.field("power_on_length_m", power_on_length, Range{0, 100},
@@ -32,6 +48,11 @@ struct ReelConfig {
     v.field("min_length_m", min_length, Range{0.05, 10}, "end stop");
     v.field("max_length_m", max_length, Range{0.1, 100}, "all that is on the drum");
     v.field("slip_tension_n", slip_tension, Range{0.5, 100}, "the drive gives way above this");
+    v.field("tension_n", tension, Range{0, 50}, "held at the outlet in mode tension");
+    v.field("compliance_mps_per_n", compliance, Range{0.01, 10},
+            "in mode tension: extra rate over the tension's error");
+    v.field("layer_per_m", layer, Range{0, 0.05},
+            "relative loss of metres per count with each metre paid out: the drum gets thinner");
   }
 };
 
@@ -70,10 +91,14 @@ class Reel {
   /// It winds in against a tether that is held, with all its force.
   [[nodiscard]] bool stalled() const noexcept { return stalled_; }
   [[nodiscard]] std::int64_t counts() const noexcept;    ///< Encoder.
-  [[nodiscard]] double metresPerCount() const noexcept;  ///< True.
-  [[nodiscard]] double scale() const noexcept { return config_.scale; }
+  [[nodiscard]] double metresPerCount() const noexcept;  ///< True, of the present layer.
+  /// True metres per nominal metre, of all that is out.
+  [[nodiscard]] double scale() const noexcept;
 
  private:
+  /// Nominal metres that the drum has turned for `length` [m] of tether.
+  [[nodiscard]] double turned(double length) const noexcept;
+
   ReelConfig config_;
   double length_;
   double rate_{0.0};

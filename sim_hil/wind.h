@@ -2,7 +2,8 @@
 
 /// @file
 /// Indoor air: a steady wind plus first-order coloured gusts (Dryden's longitudinal spectrum in the
-/// time domain), stronger near walls.
+/// time domain), stronger near walls and more so between them: in corners and shafts the rotors'
+/// own air comes back from several sides.
 
 #include <Eigen/Core>
 
@@ -15,7 +16,8 @@ struct WindConfig {
   Eigen::Vector3d mean{Eigen::Vector3d::Zero()};  ///< [m/s] in W.
   double gust{0.1};                               ///< Standard deviation of each component [m/s].
   double gust_time{1.5};                          ///< Correlation time [s].
-  double wall_factor{1.0};                        ///< Extra gust at a wall, relative to `gust`.
+  double wall_factor{1.0};                        ///< Extra gust at a wall, relative to `gust`;
+                                                  ///< each side with a wall adds to it.
   double wall_distance{0.5};                      ///< Over which that extra decays by e [m].
 
   template <class Visitor>
@@ -23,7 +25,8 @@ struct WindConfig {
     v.field("mean_mps", mean, Range{-20, 20}, "steady wind in W");
     v.field("gust_mps", gust, Range{0, 10}, "standard deviation of each component");
     v.field("gust_time_s", gust_time, Range{0.05, 60}, "correlation time");
-    v.field("wall_factor", wall_factor, Range{0, 10}, "extra gust at a wall, relative to gust_mps");
+    v.field("wall_factor", wall_factor, Range{0, 10},
+            "extra gust at a wall, relative to gust_mps; each wall adds");
     v.field("wall_distance_m", wall_distance, Range{0.01, 10}, "decay length of that extra");
   }
 };
@@ -32,12 +35,11 @@ class Wind {
  public:
   explicit Wind(const WindConfig& config) noexcept : config_(config) {}
 
-  /// Draws the air for the next h [s] at `clearance` [m] from the nearest wall. Real-time safe: no
-  /// allocation, no locks, no exceptions.
-  void step(double h, double clearance, Random& random) noexcept {
+  /// Draws the air for the next h [s] where there is `confinement` (Obstacles::confinement).
+  /// Real-time safe: no allocation, no locks, no exceptions.
+  void step(double h, double confinement, Random& random) noexcept {
     const double keep = std::exp(-h / config_.gust_time);
-    const double near_wall = std::exp(-std::fmax(clearance, 0.0) / config_.wall_distance);
-    const double sigma = config_.gust * (1.0 + config_.wall_factor * near_wall);
+    const double sigma = config_.gust * (1.0 + config_.wall_factor * confinement);
     gust_ = keep * gust_ + sigma * std::sqrt(1.0 - keep * keep) * random.normal3();
   }
 

@@ -173,5 +173,23 @@ TEST(SegmentContacts, NothingIsTouchedInTheNotchOfAConcaveFootprint) {
   }
 }
 
+TEST(Obstacles, ConfinementCountsTheSidesThatAreNear) {
+  Scene scene;
+  scene.floor = -100.0;
+  scene.boxes.push_back({"left", {-1.5, -5.0, -9.0}, {-0.5, 5.0, 9.0}});
+  constexpr double kDecay = 0.5;
+  const double one = std::exp(-0.5 / kDecay);
+  EXPECT_NEAR(Obstacles(scene).confinement({0, 0, 0}, kDecay), one, 1e-9);
+  EXPECT_NEAR(Obstacles(scene).confinement({-0.5, 0, 0}, kDecay), 1.0, 1e-9);
+  EXPECT_NEAR(Obstacles(scene).confinement({50, 0, 0}, kDecay), 0.0, 1e-9);
+  scene.boxes.push_back({"left again", {-2.0, -5.0, -9.0}, {-0.6, 5.0, 9.0}});
+  EXPECT_NEAR(Obstacles(scene).confinement({0, 0, 0}, kDecay), one, 1e-9) << "the same side";
+  scene.boxes.push_back({"right", {0.5, -5.0, -9.0}, {1.5, 5.0, 9.0}});
+  EXPECT_NEAR(Obstacles(scene).confinement({0, 0, 0}, kDecay), 2.0 * one, 1e-9);
+  scene.boxes.push_back({"front", {-0.5, -5.0, 0.5}, {0.5, 5.0, 1.5}});
+  scene.boxes.push_back({"back", {-0.5, -5.0, -1.5}, {0.5, 5.0, -0.5}});
+  EXPECT_NEAR(Obstacles(scene).confinement({0, 0, 0}, kDecay), 4.0 * one, 1e-9) << "a shaft";
+}
+
 }  // namespace
 }  // namespace tautline::sim

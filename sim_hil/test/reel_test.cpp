@@ -80,5 +80,52 @@ TEST(Reel, CountsAreWholeAndTruePerScale) {
   EXPECT_EQ(reel.counts(), static_cast<std::int64_t>(std::floor(0.5 / (0.00285 * 1.25))));
 }
 
+TEST(Reel, CountsOfAThinningDrumAreTheIntegralOverItsLayers) {
+  ReelConfig config;
+  config.scale = 1.1;
+  config.layer = 0.02;
+  config.power_on_length = 0.3;
+  const Reel reel(config, 6.0);
+  double counts = 0.0;
+  constexpr double kPiece = 1e-5;
+  for (double out = config.power_on_length + 0.5 * kPiece; out < 6.0; out += kPiece)
+    counts += kPiece / (0.00285 * 1.1 * (1.0 - 0.02 * out));
+  EXPECT_NEAR(static_cast<double>(reel.counts()), counts, 1.0);
+  EXPECT_NEAR(reel.metresPerCount(), 0.00285 * 1.1 * (1.0 - 0.02 * 6.0), 1e-12);
+  EXPECT_LT(reel.scale(), 1.1);
+  EXPECT_GT(reel.scale(), 1.1 * (1.0 - 0.02 * 6.0));
+}
+
+TEST(Reel, ThinningDrumDrivesAtTheCommandedCounts) {
+  ReelConfig config;
+  config.layer = 0.02;
+  Reel reel(config, 5.0);
+  reel.command(100.0);
+  for (int i = 0; i < 1000; ++i) reel.step(kStep, 0.0);
+  const auto before = reel.counts();
+  for (int i = 0; i < 500; ++i) {
+    reel.command(100.0);
+    reel.step(kStep, 0.0);
+  }
+  EXPECT_NEAR(static_cast<double>(reel.counts() - before), 100.0, 2.0);
+}
+
+/// The tether as a spring: the drum finds the length at which it pulls as hard as it should.
+TEST(Reel, HoldsItsTensionWhateverTheLength) {
+  ReelConfig config;
+  config.mode = ReelMode::kTension;
+  config.tension = 2.0;
+  Reel reel(config, 1.0);
+  constexpr double kStiffness = 20.0;  // [N/m]
+  constexpr double kReach = 1.4;       // [m]
+  const auto pull = [&] { return std::fmax(0.0, kStiffness * (kReach - reel.length())); };
+  for (int i = 0; i < 5000; ++i) reel.step(kStep, pull());
+  EXPECT_NEAR(pull(), 2.0, 1e-3);
+  reel.lock(true);
+  const double length = reel.length();
+  for (int i = 0; i < 1000; ++i) reel.step(kStep, 0.5);
+  EXPECT_EQ(reel.length(), length);
+}
+
 }  // namespace
 }  // namespace tautline::sim
