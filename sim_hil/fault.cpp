@@ -95,7 +95,7 @@ constexpr std::array kMenu{
     FaultKind{T::kLoop, M::kDelayed, P::kBench, "every cycle of the station comes late", "seconds late", 0.05, kDelay},
     FaultKind{T::kLoop, M::kWrong, P::kBench, "the station's clock jumps, once", "seconds forward", 2.0, {0.01, 1000}},
     FaultKind{T::kDisk, M::kOff, P::kNowhere, "logs are written by another process, lcm-logger", "", 0, kNoValue},
-    FaultKind{T::kCamera, M::kOff, P::kNowhere, "the simulated machine has no camera", "", 0, kNoValue},
+    FaultKind{T::kCamera, M::kOff, P::kNowhere, "its video does not pass the device", "", 0, kNoValue},
 };
 
 namespace fk = fotokite;

@@ -199,6 +199,7 @@ void Plant::updateTruth() noexcept {
   truth_.setpoint_elevation = vehicle_.setpoint().elevation;
   truth_.setpoint_azimuth = vehicle_.setpoint().azimuth;
   truth_.yaw = vehicle_.yaw();
+  truth_.gimbal_pitch = vehicle_.gimbalPitch();
   truth_.on_ground = truth_.p_WD.y() < ground_ + foot_ + kOnGround;
   truth_.motors_on = vehicle_.motorsOn();
   truth_.gust = air();

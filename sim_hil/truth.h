@@ -45,6 +45,7 @@ struct Truth {
   double setpoint_elevation{0.0};                 ///< The vehicle's own set-point [rad].
   double setpoint_azimuth{0.0};                   ///< [rad], not wrapped.
   double yaw{0.0};                                ///< Heading about +y [rad].
+  double gimbal_pitch{0.0};                       ///< Of the camera above the horizon [rad].
   bool on_ground{true};
   bool motors_on{false};
   bool crashed{false};
