@@ -42,7 +42,7 @@ expect 0 '2 passed, 0 failed' "$bench" safety --case 'fotokite/HOLD/encoder off*
 expect 0 '^2 cases were flown before' "$bench" safety --case 'fotokite/HOLD/encoder off*' --resume "$work/resume"
 
 expect 0 'encoder +stuck' "$sim" faults
-expect 2 'not supported: the simulated machine has no camera' "$sim" --check-config --fault 'camera off 1'
+expect 2 'not supported: its video does not pass the device' "$sim" --check-config --fault 'camera off 1'
 expect 2 'allowed: ok, off' "$sim" --check-config --fault 'encoder snag 1'
 expect 5 'has no such bus' "$sim" --check-config --fault 'bus crc 1'
 expect 5 'is not in the machine' "$sim" --check-config --fault 'loop delayed 1'
