@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -74,13 +75,14 @@ std::vector<Trial> trials(const Setup& setup) {
   return all;
 }
 
-/// Root mean square over all flights; all of them are equally long.
-AxisValues pooled(const Setup& setup, const Results& results, ServoLaw law) {
+/// Root mean square over all flights; all of them are equally long. None if one was not servoed.
+std::optional<AxisValues> pooled(const Setup& setup, const Results& results, ServoLaw law) {
   AxisValues sum{};
   for (int i = 0; i < flightsOf(setup); ++i) {
-    const nlohmann::json& rms = results.at(trialName(law, i)).at("rms");
+    const nlohmann::json& flight = results.at(trialName(law, i));
+    if (!flight.at("servoed").get<bool>()) return std::nullopt;
     for (std::size_t k = 0; k < sum.size(); ++k) {
-      const double value = rms.at(k);
+      const double value = flight.at("rms").at(k);
       sum[k] += value * value / flightsOf(setup);
     }
   }
@@ -142,8 +144,8 @@ plot::Figure errorFigure(const Results& results) {
 
 Findings judge(const Setup& setup, const Results& results) {
   Findings findings;
-  const AxisValues published = pooled(setup, results, ServoLaw::kAsPublished);
-  const AxisValues ours = pooled(setup, results, ServoLaw::kTracking);
+  const std::optional<AxisValues> published = pooled(setup, results, ServoLaw::kAsPublished);
+  const std::optional<AxisValues> ours = pooled(setup, results, ServoLaw::kTracking);
   findings.rows.push_back({.figure = "flights servoed to the end",
                            .unit = "",
                            .published = 1.0,
@@ -154,8 +156,8 @@ Findings judge(const Setup& setup, const Results& results) {
     Row row{.figure = fmt::format("RMS error of {}", kAxes[i].name),
             .unit = kAxes[i].unit,
             .published = kAxes[i].published_rms,
-            .as_published = published[i],
-            .tautline = ours[i],
+            .as_published = published ? std::optional((*published)[i]) : std::nullopt,
+            .tautline = ours ? std::optional((*ours)[i]) : std::nullopt,
             .note = "how fast the marker was carried is not published"};
     if (i < 4) row.tautline_band = Band{.max = kAxes[i].published_rms};
     findings.rows.push_back(row);
