@@ -1,10 +1,12 @@
 #include "app/experiments/experiment.h"
 #include "app/experiments/localization.h"
+#include "app/experiments/risk_truth.h"
+#include "app/experiments/staircase.h"
 
 namespace tautline::experiments {
 
 const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> all{kLocalization};
+  static const std::vector<Experiment> all{kLocalization, kStaircase, kRiskTruth};
   return all;
 }
 

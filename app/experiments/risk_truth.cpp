@@ -1,0 +1,228 @@
+#include "app/experiments/risk_truth.h"
+
+#include <array>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/experiments/truth_paths.h"
+#include "common/toml/config_file.h"
+
+namespace tautline::experiments {
+namespace {
+
+constexpr std::array kStations{"as published", "ours"};
+
+TruthOptions optionsOf(const Setup& setup) {
+  TruthOptions options{.seed = setup.seed};
+  if (setup.quick) {
+    options.maps = 8;
+    options.goals = 1;
+    options.flights = 4;
+  }
+  return options;
+}
+
+CampaignFlight whoFlies(const Setup& setup, std::size_t station) {
+  CampaignFlight who;
+  who.station = station == 0 ? setup.as_published : setup.tautline;
+  who.plant = setup.plant;
+  return who;
+}
+
+std::string trialName(std::size_t station, const TruthCase& c) {
+  return fmt::format("{} {}", kStations[station], c.name());
+}
+
+std::vector<Trial> trials(const Setup& setup) {
+  const auto params = std::make_shared<const planning::RiskParams>(
+      loadConfig<planning::RiskParams>(setup.folder / "../risk/dissertation.toml"));
+  std::vector<Trial> all;
+  for (std::size_t station = 0; station < kStations.size(); ++station) {
+    for (const TruthCase& c : truthCases(optionsOf(setup))) {
+      all.push_back({trialName(station, c), [&setup, params, station, c] {
+                       return toJson(
+                           flyTruthCase(c, optionsOf(setup), *params, whoFlies(setup, station)));
+                     }});
+    }
+  }
+  return all;
+}
+
+void append(std::array<Measure, kMeasures>& to, const std::array<Measure, kMeasures>& from) {
+  for (std::size_t m = 0; m < kMeasures; ++m) {
+    to[m].name = from[m].name;
+    to[m].forecasts.insert(to[m].forecasts.end(), from[m].forecasts.begin(),
+                           from[m].forecasts.end());
+  }
+}
+
+/// What one station's flights say.
+struct Side {
+  std::vector<TruthPath> paths;                            ///< That were flown.
+  std::optional<std::array<Measure, kMeasures>> measures;  ///< On rooms that fits have not seen.
+
+  [[nodiscard]] std::optional<double> brier(MeasureIndex m) const {
+    if (!measures) return {};
+    return brierScore((*measures)[m].forecasts);
+  }
+  [[nodiscard]] std::optional<double> error(MeasureIndex m) const {
+    if (!measures) return {};
+    return calibrationError((*measures)[m].forecasts);
+  }
+  [[nodiscard]] double failureShare(const char* planner) const {
+    std::int64_t failed = 0;
+    std::int64_t flights = 0;
+    for (const TruthPath& p : paths) {
+      if (p.planner != planner) continue;
+      failed += p.failed();
+      flights += p.flights();
+    }
+    return flights > 0 ? static_cast<double>(failed) / static_cast<double>(flights) : 0.0;
+  }
+};
+
+Side sideOf(const Setup& setup, const Results& results, std::size_t station) {
+  Side side;
+  for (const TruthCase& c : truthCases(optionsOf(setup))) {
+    TruthPath path = truthPathFrom(results.at(trialName(station, c)));
+    if (path.flights() > 0) side.paths.push_back(std::move(path));
+  }
+  // Each half of the rooms is judged with what the other half says.
+  const Halves halves = halve(side.paths);
+  if (canFit(halves.even) && canFit(halves.odd)) {
+    side.measures.emplace();
+    append(*side.measures, measure(halves.odd, halves.even));
+    append(*side.measures, measure(halves.even, halves.odd));
+  }
+  return side;
+}
+
+Sheet pathsSheet(const std::array<Side, 2>& sides) {
+  Sheet sheet{"paths",
+              {"<station", "room", "<planner", "states", "risk index", "additive", "flights",
+               "failed", "95 % from", "to"},
+              {}};
+  for (const auto& end : kFlightEndNames) sheet.columns.emplace_back(end.name);
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    for (const TruthPath& p : sides[s].paths) {
+      const Interval i = clopperPearson(p.failed(), p.flights());
+      std::vector<std::string> row{kStations[s],
+                                   std::to_string(p.map),
+                                   p.planner,
+                                   std::to_string(p.points.size()),
+                                   fmt::format("{:.3f}", p.prediction.risk),
+                                   fmt::format("{:.3f}", p.prediction.additive),
+                                   std::to_string(p.flights()),
+                                   std::to_string(p.failed()),
+                                   fmt::format("{:.3f}", i.low),
+                                   fmt::format("{:.3f}", i.high)};
+      for (const std::int64_t count : p.ends) row.push_back(std::to_string(count));
+      sheet.rows.push_back(std::move(row));
+    }
+  }
+  return sheet;
+}
+
+Sheet measuresSheet(const std::array<Side, 2>& sides) {
+  Sheet sheet{
+      "measures", {"<station", "<measure", "flights", "Brier score", "calibration error"}, {}};
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    if (!sides[s].measures) continue;
+    for (const Measure& m : *sides[s].measures) {
+      std::int64_t flights = 0;
+      for (const Forecast& f : m.forecasts) flights += f.flights;
+      sheet.rows.push_back({kStations[s], m.name, std::to_string(flights),
+                            fmt::format("{:.4f}", brierScore(m.forecasts)),
+                            fmt::format("{:.4f}", calibrationError(m.forecasts))});
+    }
+  }
+  return sheet;
+}
+
+Picture reliabilityPicture(const Side& side, std::size_t station) {
+  plot::Figure figure;
+  figure.title = fmt::format("Predicted and simulated failures, {}", kStations[station]);
+  figure.rows = 2;
+  figure.columns = 2;
+  figure.width_px = 1000;
+  figure.height_px = 900;
+  constexpr std::array kShown{kIndex, kAdditive, kIndexFitted, kAdditiveScaled};
+  for (const MeasureIndex m : kShown) {
+    figure.panels.push_back(reliabilityPanel(
+        (*side.measures)[m].forecasts, (*side.measures)[m].name,
+        m == kIndex || m == kIndexFitted ? plot::Colour::kBlue : plot::Colour::kVermilion));
+  }
+  return {fmt::format("reliability_{}", station == 0 ? "as_published" : "tautline"),
+          "Share of flights that failed over the predicted probability: single paths in grey, "
+          "tenths of the predictions with the exact 95 % interval; on the dashed line a measure "
+          "tells the truth. Fitted measures are judged on rooms that they have not seen.",
+          std::move(figure)};
+}
+
+/// A figure of the index that must not be above that of the additive measure.
+Row compare(const std::string& figure, const std::array<std::optional<double>, 2>& index,
+            const std::array<std::optional<double>, 2>& additive, const std::string& note) {
+  const auto atMost = [](const std::optional<double>& limit) {
+    return limit ? std::optional(Band{.max = *limit}) : std::nullopt;
+  };
+  return {.figure = figure,
+          .as_published = index[0],
+          .tautline = index[1],
+          .as_published_band = atMost(additive[0]),
+          .tautline_band = atMost(additive[1]),
+          .note = note};
+}
+
+Findings judge(const Setup& setup, const Results& results) {
+  const std::array<Side, 2> sides{sideOf(setup, results, 0), sideOf(setup, results, 1)};
+  const auto brier = [&](MeasureIndex m) {
+    return std::array{sides[0].brier(m), sides[1].brier(m)};
+  };
+  const auto error = [&](MeasureIndex m) {
+    return std::array{sides[0].error(m), sides[1].error(m)};
+  };
+  Findings findings;
+  findings.rows.push_back(compare(
+      "Brier score of the risk index", brier(kIndex), brier(kAdditive),
+      "The band ends at the score of the additive measure, read as a probability by the union "
+      "bound. The index has the parameters that the dissertation gave its vehicle."));
+  findings.rows.push_back(compare(
+      "Brier score, one fitted factor each", brier(kIndexScaled), brier(kAdditiveScaled),
+      "The band ends at the score of the additive measure with as much freedom; both are judged on "
+      "rooms that they have not seen."));
+  findings.rows.push_back(compare("Brier score, six fitted elements", brier(kIndexFitted),
+                                  brier(kBaseRate),
+                                  "The band ends at the score of the share of failures alone: "
+                                  "beyond it the index knows nothing of the path."));
+  findings.rows.push_back(compare("calibration error, six fitted elements", error(kIndexFitted),
+                                  error(kIndex), "The band ends at the error before the fit."));
+  std::array<std::optional<double>, 2> least;
+  std::array<std::optional<double>, 2> additive;
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    least[s] = sides[s].failureShare(kTruthPlanners[0]);
+    additive[s] = sides[s].failureShare(kTruthPlanners[1]);
+  }
+  findings.rows.push_back(compare("share of failures on paths of least risk", least, additive,
+                                  "The band ends at the share on the additive planner's paths to "
+                                  "the same goals."));
+  findings.sheets.push_back(measuresSheet(sides));
+  findings.sheets.push_back(pathsSheet(sides));
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    if (sides[s].measures) findings.pictures.push_back(reliabilityPicture(sides[s], s));
+  }
+  return findings;
+}
+
+}  // namespace
+
+const Experiment kRiskTruth{
+    "risk_truth", "Does the risk index tell the truth?",
+    "Planned paths through generated rooms of 4 to 32 things (the staircase's size, voxels, reel "
+    "and "
+    "start), by the planner of least risk and by the additive one, to the same goals, each flown "
+    "many times by both stations. Predicted is the risk index with the dissertation's parameters, "
+    "and the additive measure: the sum of its locale risks over the path's states.",
+    trials, judge};
+
+}  // namespace tautline::experiments
