@@ -6,7 +6,8 @@
 namespace tautline::experiments {
 namespace {
 
-constexpr Duration kLimit = std::chrono::minutes(30);
+constexpr Duration kStartLimit = std::chrono::minutes(2);  // to arm and take off
+constexpr Duration kLimit = std::chrono::minutes(30);      // of the mission
 constexpr Duration kPatience = std::chrono::seconds(60);  // for the next waypoint
 constexpr Duration kSample = std::chrono::milliseconds(100);
 constexpr ConditionSet kLost{Condition::kLocalizationLost, Condition::kUnplannedContact};
@@ -85,10 +86,10 @@ FlightEnd judge(const FlightFacts& facts, double goal_tolerance) noexcept {
 FlightVerdict flyPlanned(const bench::LockstepConfig& config, const MissionPlan& mission,
                          double goal_tolerance, FlightTrack* track) {
   bench::Lockstep bench(config, nullptr);
-  const Time end = bench.now() + kLimit;
-  const bench::MissionStart start = bench::beginMission(bench, mission, end);
+  const bench::MissionStart start =
+      bench::beginMission(bench, mission, bench.now() + kStartLimit);
   Follower follower(bench, track);
-  if (start.navigating) follower.fly(end);
+  if (start.navigating) follower.fly(bench.now() + kLimit);
   const Eigen::Vector3d goal =
       mission.waypoints[static_cast<std::size_t>(mission.waypoint_count - 1)].p_WD;
   FlightVerdict verdict;
