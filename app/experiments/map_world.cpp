@@ -100,6 +100,17 @@ class BoxGrower {
   std::vector<std::uint8_t> left_;
 };
 
+/// Height of what a vehicle at p stands on: the highest box below it, or the floor.
+double groundBelow(const Eigen::Vector3d& p, const Scene& scene) {
+  double ground = scene.floor;
+  for (const Box& box : scene.boxes) {
+    const bool under = box.min.x() <= p.x() && p.x() <= box.max.x() && box.min.z() <= p.z() &&
+                       p.z() <= box.max.z() && box.max.y() <= p.y();
+    if (under) ground = std::max(ground, box.max.y());
+  }
+  return ground;
+}
+
 }  // namespace
 
 SolidGrid solidGrid(const VoxelMap& map, double inflation) {
@@ -141,9 +152,9 @@ std::vector<Box> mergedBoxes(const SolidGrid& grid) {
 Scene worldOf(const VoxelMap& map, const Eigen::Vector3d& reel, const MissionPlan& mission,
               const WorldOptions& options) {
   TAUTLINE_CHECK(mission.waypoint_count > 0);
-  if (options.inflation < 0.0 || options.inflation >= 0.5 * map.resolution) {
+  if (inflation < 0.0 || inflation >= 0.5 * map.resolution) {
     throw InputError({.key = "--inflation",
-                      .problem = fmt::format("is {:g} m", options.inflation),
+                      .problem = fmt::format("is {:g} m", inflation),
                       .allowed = fmt::format("0 to less than {:g} m, half a cell of the map {}",
                                              0.5 * map.resolution, map.name)},
                      ExitCode::kUsage);
@@ -159,27 +170,18 @@ Scene worldOf(const VoxelMap& map, const Eigen::Vector3d& reel, const MissionPla
     scene.min -= Eigen::Vector3d(kOpenAir, 0.0, kOpenAir);
     scene.max += Eigen::Vector3d::Constant(kOpenAir);
   }
-  scene.boxes = mergedBoxes(solidGrid(map, options.inflation));
-  if (scene.boxes.size() >= static_cast<std::size_t>(sim::kMaxSolids)) {
+  scene.boxes = mergedBoxes(solidGrid(map, inflation));
+  if (scene.boxes.size() > static_cast<std::size_t>(sim::kMaxSolids)) {
     throw InputError(
         {.file = map.file,
          .problem = fmt::format("its obstacles are {} boxes", scene.boxes.size()),
-         .allowed = fmt::format("at most {} in the simulated machine's world", sim::kMaxSolids - 1),
+         .allowed = fmt::format("at most {} in the simulated machine's world", sim::kMaxSolids),
          .remedy = "a coarser map, or a smaller part of it: --resolution, --crop"});
   }
   scene.reel = reel;
   Eigen::Vector3d start = reel + mission.waypoints[0].p_WD;
-  start.y() = std::min(start.y(), std::max(start.y() - options.takeoff_height, reel.y()));
+  start.y() = groundBelow(start, scene) + kFoot;
   scene.start = start;
-  if (start.y() - kFoot > scene.floor) {
-    const Eigen::Vector3d half(0.5 * kPlatformWidth, 0.0, 0.5 * kPlatformWidth);
-    const Eigen::Vector3d top = start - Eigen::Vector3d(0.0, kFoot, 0.0);
-    scene.boxes.push_back(
-        {.name = "platform",
-         .min = top - half -
-                Eigen::Vector3d(0.0, std::min(kPlatformThickness, top.y() - scene.floor), 0.0),
-         .max = top + half});
-  }
   return sceneInWorld(scene);
 }
 

@@ -37,23 +37,15 @@ struct SolidGrid {
 /// yet as far as it goes along x, then y, then z.
 [[nodiscard]] std::vector<Box> mergedBoxes(const SolidGrid& grid);
 
-/// Where and how big the box of the landing platform is that the drone is parked on.
-inline constexpr double kPlatformWidth = 0.3;       // [m]
-inline constexpr double kPlatformThickness = 0.05;  // [m]
-inline constexpr double kFoot = 0.1;                ///< Attachment over the platform [m].
-
-struct WorldOptions {
-  double inflation{0.0};       ///< Of the map's obstacles [m].
-  double takeoff_height{0.9};  ///< Of the station's first hover above its home [m].
-};
+/// Of the tether's attachment over what the parked drone stands on [m].
+inline constexpr double kFoot = 0.1;
 
 /// The plant's world in W. Its room is the map's extent if the map is walled (solid_border), else
-/// 100 m wider on all sides but the floor. The drone is parked under the mission's first waypoint
-/// on a platform, so that the take-off's hover is not below that waypoint and the tether does not
-/// lead downwards. `reel` is the outlet in M. Throws InputError if there are more boxes than the
-/// plant takes.
+/// 100 m wider on all sides but the floor. The drone is parked on what is below the mission's first
+/// waypoint. `reel` is the outlet in M; `inflation` as of solidGrid(). Throws InputError if there
+/// are more boxes than the plant takes, or the inflation is half a cell or more.
 [[nodiscard]] Scene worldOf(const planning::VoxelMap& map, const Eigen::Vector3d& reel,
-                            const MissionPlan& mission, const WorldOptions& options);
+                            const MissionPlan& mission, double inflation);
 
 /// The scene as `*.scene.toml`: room, floor, reel, start, rewards, boxes. Prisms and layers are not
 /// written.

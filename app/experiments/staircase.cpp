@@ -65,7 +65,7 @@ CampaignFlight flightOf(const Setup& setup, const Ready& ready, std::size_t view
   flight.mission = &ready.paths[viewpoint].mission;
   const planning::VoxelMap& map = *ready.space.space.map;
   flight.world = worldOf(map, *map.reel, *flight.mission->plan,
-                         {kInflation, flight.station.core.guidance.takeoff_height_m});
+                         kInflation);
   return flight;
 }
 

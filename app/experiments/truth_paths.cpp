@@ -93,7 +93,7 @@ TruthPath flyTruthCase(const TruthCase& c, const TruthOptions& options,
   CampaignFlight flight = who;
   flight.mission = &path.mission;
   flight.world = worldOf(map, *map.reel, *path.mission.plan,
-                         {kInflation, who.station.core.guidance.takeoff_height_m});
+                         kInflation);
   for (std::int64_t i = 0; i < options.flights; ++i) {
     const FlightVerdict verdict =
         flyPlanned(flight.config(options.seed + static_cast<std::uint64_t>(i)), *path.mission.plan,

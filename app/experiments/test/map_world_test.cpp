@@ -86,30 +86,37 @@ MissionPlan& missionTo(const Eigen::Vector3d& p_WD) {
   return plan;
 }
 
-TEST(WorldOfMap, ParksTheDroneOnAPlatformUnderTheFirstWaypoint) {
-  const planning::VoxelMap map = clutteredMap(6, 1);
-  const Scene world = worldOf(map, *map.reel, missionTo(*map.start - *map.reel), {0.15, 0.9});
-  ASSERT_TRUE(world.start.has_value());
-  EXPECT_NEAR(world.start->x(), map.start->x() - map.reel->x(), 1e-12);
-  EXPECT_NEAR(world.start->y(), 0.0, 1e-12);  // as high as the reel: 0.9 m lower would be below it
-  EXPECT_NEAR(world.boxes.back().max.y(), world.start->y() - kFoot, 1e-12);
-  EXPECT_NEAR(world.floor, -map.reel->y(), 1e-12);
-  EXPECT_FALSE(firstHit(Eigen::Vector3d::Zero(), *world.start, world).has_value());
+TEST(WorldOfMap, ParksTheDroneOnWhatIsBelowTheFirstWaypoint) {
+  planning::VoxelMap map = clutteredMap(0, 1);
+  const MissionPlan& mission = missionTo(*map.start - *map.reel);
+  const Scene empty = worldOf(map, *map.reel, mission, 0.15);
+  ASSERT_TRUE(empty.start.has_value());
+  EXPECT_NEAR(empty.start->x(), map.start->x() - map.reel->x(), 1e-12);
+  EXPECT_NEAR(empty.start->y(), kFoot - map.reel->y(), 1e-12);
+  EXPECT_NEAR(empty.floor, -map.reel->y(), 1e-12);
+  // A block of a cell under it, and one above.
+  Eigen::Vector3i cell = map.cellAt(*map.start);
+  for (const int y : {0, 7}) {
+    cell.y() = y;
+    map.cells[static_cast<std::size_t>(map.shape.index(cell))] = planning::CellState::kOccupied;
+  }
+  const Scene block = worldOf(map, *map.reel, mission, 0.0);
+  EXPECT_NEAR(block.start->y(), 0.4 + kFoot - map.reel->y(), 1e-12);
 }
 
 TEST(WorldOfMap, RefusesMoreThanThePlantTakes) {
   const planning::VoxelMap map = noise(20, 10, 20, 30, 3);
   try {
-    (void)worldOf(map, map.origin, missionTo({0.0, 0.5, 0.5}), {});
+    (void)worldOf(map, map.origin, missionTo({0.0, 0.5, 0.5}), 0.0);
     FAIL() << "not refused";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("at most 511"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("at most 512"), std::string::npos) << e.what();
   }
 }
 
 TEST(WorldOfMap, TextReadsBack) {
   const planning::VoxelMap map = clutteredMap(8, 2);
-  const Scene world = worldOf(map, *map.reel, missionTo(*map.start - *map.reel), {0.15, 0.9});
+  const Scene world = worldOf(map, *map.reel, missionTo(*map.start - *map.reel), 0.15);
   const Scene back = sceneInWorld(parseScene(sceneText(sceneFromWorld(world, *map.reel)), "text"));
   ASSERT_EQ(back.boxes.size(), world.boxes.size());
   for (std::size_t i = 0; i < back.boxes.size(); ++i) {
