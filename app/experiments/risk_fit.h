@@ -25,8 +25,8 @@ struct CostOutcome {
 [[nodiscard]] double logLikelihood(const std::vector<CostOutcome>& paths,
                                    const Eigen::VectorXd& factors);
 
-/// The one factor s >= 0 for all elements together that makes the flights likeliest. There must be
-/// flights that failed and flights that did not, and failures only where there is a cost.
+/// The one factor s for all elements together that makes the flights likeliest, between 1e-9 (none
+/// failed) and 1e9 (all did).
 [[nodiscard]] double fitScale(const std::vector<CostOutcome>& paths);
 
 /// A factor a_k >= 0 for each element. Elements that always come together (every metre of way also

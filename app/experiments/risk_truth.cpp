@@ -90,7 +90,7 @@ Side sideOf(const Setup& setup, const Results& results, std::size_t station) {
   }
   // Each half of the rooms is judged with what the other half says.
   const Halves halves = halve(side.paths);
-  if (canFit(halves.even) && canFit(halves.odd)) {
+  if (!halves.even.empty() && !halves.odd.empty()) {
     side.measures.emplace();
     append(*side.measures, measure(halves.odd, halves.even));
     append(*side.measures, measure(halves.even, halves.odd));

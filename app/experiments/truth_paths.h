@@ -84,7 +84,8 @@ enum MeasureIndex : std::size_t {
   kBaseRate,        ///< The share of failures in `seen`, whatever the path: no skill at all.
   kMeasures
 };
-/// All measures, for `judged`. `seen` has failures and successes.
+/// All measures, for `judged`; `seen` is not empty. Where all of it ended alike, fits say that all
+/// does.
 [[nodiscard]] std::array<Measure, kMeasures> measure(const std::vector<TruthPath>& seen,
                                                      const std::vector<TruthPath>& judged);
 

@@ -77,6 +77,14 @@ TEST(RiskFit, ElementsThatComeTogetherGetTheSameFactor) {
   EXPECT_NEAR(found[0], 1.3, 0.1);
 }
 
+TEST(RiskFit, FlightsThatAllEndAlikeSayThatAllDo) {
+  std::vector<CostOutcome> rows = synthetic(Eigen::VectorXd::Constant(2, 1.0), 20, 10, 6);
+  for (CostOutcome& row : rows) row.failed = 0;
+  EXPECT_NEAR(riskWith(fitFactors(rows), rows[0].cost), 0.0, 1e-6);
+  for (CostOutcome& row : rows) row.failed = row.flights;
+  EXPECT_NEAR(riskWith(fitFactors(rows), rows[0].cost), 1.0, 1e-6);
+}
+
 planning::RiskParams published() {
   return loadConfig<planning::RiskParams>(TAUTLINE_SOURCE_DIR "/config/risk/dissertation.toml");
 }
