@@ -82,8 +82,7 @@ ExitCode run(Options& o) {
   flight.goal_tolerance = o.goal_tolerance;
   if (!o.station_config.empty()) flight.station = loadConfig<StationConfig>(o.station_config);
   if (!o.sim_config.empty()) flight.plant = loadConfig<sim::SimConfig>(o.sim_config);
-  flight.world = worldOf(*space.space.map, reel, *mission.plan,
-                         o.inflation);
+  flight.world = worldOf(*space.space.map, reel, *mission.plan, o.inflation);
   if (!o.write_scene.empty()) {
     writeFileAtomically(o.write_scene, sceneText(sceneFromWorld(flight.world, reel)));
   }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Duration kStartLimit = std::chrono::minutes(2);  // to arm and take off
 constexpr Duration kLimit = std::chrono::minutes(30);      // of the mission
-constexpr Duration kPatience = std::chrono::seconds(60);  // for the next waypoint
+constexpr Duration kPatience = std::chrono::seconds(60);   // for the next waypoint
 constexpr Duration kSample = std::chrono::milliseconds(100);
 constexpr ConditionSet kLost{Condition::kLocalizationLost, Condition::kUnplannedContact};
 constexpr ConditionSet kNeverThere{Condition::kMissionFailed, Condition::kOscillation};
@@ -86,8 +86,7 @@ FlightEnd judge(const FlightFacts& facts, double goal_tolerance) noexcept {
 FlightVerdict flyPlanned(const bench::LockstepConfig& config, const MissionPlan& mission,
                          double goal_tolerance, FlightTrack* track) {
   bench::Lockstep bench(config, nullptr);
-  const bench::MissionStart start =
-      bench::beginMission(bench, mission, bench.now() + kStartLimit);
+  const bench::MissionStart start = bench::beginMission(bench, mission, bench.now() + kStartLimit);
   Follower follower(bench, track);
   if (start.navigating) follower.fly(bench.now() + kLimit);
   const Eigen::Vector3d goal =

@@ -64,8 +64,7 @@ CampaignFlight flightOf(const Setup& setup, const Ready& ready, std::size_t view
   flight.plant = setup.plant;
   flight.mission = &ready.paths[viewpoint].mission;
   const planning::VoxelMap& map = *ready.space.space.map;
-  flight.world = worldOf(map, *map.reel, *flight.mission->plan,
-                         kInflation);
+  flight.world = worldOf(map, *map.reel, *flight.mission->plan, kInflation);
   return flight;
 }
 

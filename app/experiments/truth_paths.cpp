@@ -92,8 +92,7 @@ TruthPath flyTruthCase(const TruthCase& c, const TruthOptions& options,
   result.prediction = path.prediction;
   CampaignFlight flight = who;
   flight.mission = &path.mission;
-  flight.world = worldOf(map, *map.reel, *path.mission.plan,
-                         kInflation);
+  flight.world = worldOf(map, *map.reel, *path.mission.plan, kInflation);
   for (std::int64_t i = 0; i < options.flights; ++i) {
     const FlightVerdict verdict =
         flyPlanned(flight.config(options.seed + static_cast<std::uint64_t>(i)), *path.mission.plan,
