@@ -150,7 +150,7 @@ std::vector<Box> mergedBoxes(const SolidGrid& grid) {
 }
 
 Scene worldOf(const VoxelMap& map, const Eigen::Vector3d& reel, const MissionPlan& mission,
-              const WorldOptions& options) {
+              double inflation) {
   TAUTLINE_CHECK(mission.waypoint_count > 0);
   if (inflation < 0.0 || inflation >= 0.5 * map.resolution) {
     throw InputError({.key = "--inflation",
