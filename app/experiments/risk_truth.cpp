@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/experiments/staircase.h"
 #include "app/experiments/truth_paths.h"
 #include "common/toml/config_file.h"
 
@@ -25,7 +26,7 @@ TruthOptions optionsOf(const Setup& setup) {
 
 CampaignFlight whoFlies(const Setup& setup, std::size_t station) {
   CampaignFlight who;
-  who.station = station == 0 ? setup.as_published : setup.tautline;
+  who.station = station == 0 ? publishedDemonstration(setup) : setup.tautline;
   who.plant = setup.plant;
   return who;
 }

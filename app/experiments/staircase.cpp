@@ -60,7 +60,7 @@ Ready plan(const Setup& setup) {
 CampaignFlight flightOf(const Setup& setup, const Ready& ready, std::size_t viewpoint,
                         std::size_t station) {
   CampaignFlight flight;
-  flight.station = station == 0 ? setup.as_published : setup.tautline;
+  flight.station = station == 0 ? publishedDemonstration(setup) : setup.tautline;
   flight.plant = setup.plant;
   flight.mission = &ready.paths[viewpoint].mission;
   const planning::VoxelMap& map = *ready.space.space.map;
@@ -241,6 +241,13 @@ Findings judge(const Setup& setup, const Results& results) {
 }
 
 }  // namespace
+
+StationConfig publishedDemonstration(const Setup& setup) {
+  StationConfig station = setup.as_published;
+  station.core.localizer.variant = LocalizerVariant::kAsPublishedCode;
+  station.core.control.law = Law::kPosition;
+  return station;
+}
 
 const Experiment kStaircase{
     "staircase", "Staircase: both viewpoints",

@@ -108,7 +108,7 @@ TEST(Calibration, FindsTheParametersOfAWorldThatObeysTheModel) {
       }
     }
   }
-  for (TruthPath& p : paths) p = reassess({p}, kSeed, scaled(published(), truth)).front();
+  paths = reassess(paths, kSeed, scaled(published(), truth));
   for (TruthPath& p : paths) {
     const auto failed = static_cast<std::int64_t>(std::llround(p.prediction.risk * kFlights));
     p.ends[static_cast<std::size_t>(FlightEnd::kObstacle)] = failed;
