@@ -6,6 +6,15 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=toolchain/lib.sh
 source "$root/toolchain/lib.sh"
 
+# `--scene staircase` is more than a flight.
+arguments=("$@")
+for ((i = 0; i + 1 < ${#arguments[@]}; i++)); do
+  if [[ ${arguments[i]} == --scene && ${arguments[i + 1]} == staircase ]]; then
+    unset 'arguments[i]' 'arguments[i + 1]'
+    exec "$root/toolchain/staircase_demo.sh" "${arguments[@]}"
+  fi
+done
+
 headless=false
 out=
 mission=$root/config/missions/one_contact.mission.toml
@@ -18,7 +27,7 @@ while [[ $# -gt 0 ]]; do
     --mission) mission=${2:?--mission needs a file}; shift ;;
     --scene) scene=${2:?--scene needs a file}; shift ;;
     --seed) seed=${2:?--seed needs a number}; shift ;;
-    *) echo "run demo: error: unknown option '$1'; allowed: --headless --out DIR --mission FILE --scene FILE --seed N" >&2; exit 2 ;;
+    *) echo "run demo: error: unknown option '$1'; allowed: --headless --out DIR --mission FILE --scene FILE|staircase --seed N" >&2; exit 2 ;;
   esac
   shift
 done

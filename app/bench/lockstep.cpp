@@ -176,46 +176,73 @@ void Lockstep::recordTruth() noexcept {
   record(channel::kSimTruth, message);
 }
 
+namespace {
+
+/// One cycle of a scripted flight at a time.
+struct Script {
+  Lockstep& bench;
+  std::uint64_t mission;
+  Time end;
+  const std::function<void(const Lockstep&)>& each_cycle;
+  std::int64_t sequence{0};
+
+  bool cycle(const std::optional<OperatorCommand>& command = {},
+             const tautline::mission_chunk_t* chunk = nullptr) {
+    const StepOutput& out = bench.step(command, chunk);
+    if (each_cycle) each_cycle(bench);
+    return out.ack && out.ack->result == AckResult::kAccepted;
+  }
+  bool ask(Request request) {
+    return cycle(OperatorCommand{kSession, ++sequence, request, mission});
+  }
+  [[nodiscard]] bool over() const { return bench.now() >= end || bench.truth().crashed; }
+  bool flyUntil(Mode mode) {
+    while (!over() && bench.output().supervision.mode != mode) cycle();
+    return !over();
+  }
+};
+
+}  // namespace
+
+MissionStart beginMission(Lockstep& bench, const MissionPlan& mission, Time end,
+                          const std::function<void(const Lockstep&)>& each_cycle) {
+  MissionStart start;
+  Script script{bench, mission.hash, end, each_cycle};
+  // Telemetry has to run for a moment before the station lets itself be armed.
+  while (!start.armed && !script.over()) {
+    for (int i = 0; i < 50; ++i) script.cycle();
+    start.armed = script.ask(Request::kArm);
+  }
+  start.took_off = start.armed && script.ask(Request::kTakeoff) && script.flyUntil(Mode::kHold);
+  if (start.took_off) {
+    forEachChunk(mission, [&](tautline::mission_chunk_t& chunk) {
+      chunk.session = kSession;
+      chunk.sequence = ++script.sequence;
+      return script.cycle({}, &chunk);
+    });
+    start.navigating = script.ask(Request::kNavigate);
+  }
+  start.sequence = script.sequence;
+  return start;
+}
+
 FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration limit,
                         const std::function<void(const Lockstep&)>& each_cycle) {
   FlightResult result;
   const Time end = bench.now() + limit;
-  std::int64_t sequence = 0;
-  const auto cycle = [&](const std::optional<OperatorCommand>& command = {},
-                         const tautline::mission_chunk_t* chunk = nullptr) {
-    const StepOutput& out = bench.step(command, chunk);
-    if (each_cycle) each_cycle(bench);
-    return out.ack && out.ack->result == AckResult::kAccepted;
-  };
-  const auto ask = [&](Request request) {
-    return cycle(OperatorCommand{kSession, ++sequence, request, mission.hash});
-  };
-  const auto over = [&] { return bench.now() >= end || bench.truth().crashed; };
-  const auto flyUntil = [&](Mode mode) {
-    while (!over() && bench.output().supervision.mode != mode) cycle();
-    return !over();
-  };
-
-  // Telemetry has to run for a moment before the station lets itself be armed.
-  while (!result.armed && !over()) {
-    for (int i = 0; i < 50; ++i) cycle();
-    result.armed = ask(Request::kArm);
-  }
-  result.took_off = result.armed && ask(Request::kTakeoff) && flyUntil(Mode::kHold);
-  if (result.took_off) {
-    forEachChunk(mission, [&](tautline::mission_chunk_t& chunk) {
-      chunk.session = kSession;
-      chunk.sequence = ++sequence;
-      return cycle({}, &chunk);
-    });
-    if (ask(Request::kNavigate)) flyUntil(Mode::kHold);
+  const MissionStart start = beginMission(bench, mission, end, each_cycle);
+  Script script{bench, mission.hash, end, each_cycle, start.sequence};
+  result.armed = start.armed;
+  result.took_off = start.took_off;
+  if (start.took_off) {
+    if (start.navigating) script.flyUntil(Mode::kHold);
     result.completed = bench.output().mission.state == MissionState::kCompleted;
   }
-  if (!over() && bench.output().supervision.mode != Mode::kStandby) {
-    ask(Request::kLand);
-    flyUntil(Mode::kStandby);
+  if (!script.over() && bench.output().supervision.mode != Mode::kStandby) {
+    script.ask(Request::kLand);
+    script.flyUntil(Mode::kStandby);
     for (const Time settled = bench.now() + kSettle; bench.now() < settled;)
-      cycle();  // the last centimetres, rotors off
+      script.cycle();  // the last centimetres, rotors off
     result.landed = bench.output().supervision.mode == Mode::kStandby && bench.truth().on_ground &&
                     !bench.truth().motors_on && !bench.truth().crashed;
   }

@@ -107,6 +107,19 @@ struct FlightResult {
   Duration duration{};  ///< Virtual time from start to end.
 };
 
+/// The beginning of a scripted flight: what the operator got.
+struct MissionStart {
+  bool armed{false};
+  bool took_off{false};
+  bool navigating{false};    ///< The mission was accepted; its first cycle has been.
+  std::int64_t sequence{0};  ///< Of the operator's last message.
+};
+
+/// Arms, takes off, sends `mission` and asks for it; gives up at `end` or with a crash.
+/// `each_cycle` (may be empty) is called after every cycle.
+MissionStart beginMission(Lockstep& bench, const MissionPlan& mission, Time end,
+                          const std::function<void(const Lockstep&)>& each_cycle = {});
+
 /// Arms, takes off, flies `mission` and lands; gives up at `limit` of virtual time. `each_cycle`
 /// (may be empty) is called after every cycle.
 FlightResult flyMission(Lockstep& bench, const MissionPlan& mission, Duration limit,

@@ -19,6 +19,8 @@
 #include "app/bench/replay.h"
 #include "app/bench/safety_command.h"
 #include "app/bench/scenario_command.h"
+#include "app/experiments/calibrate_command.h"
+#include "app/experiments/campaign_command.h"
 #include "app/experiments/experiments_command.h"
 #include "app/station/recording.h"
 #include "app/version.h"
@@ -204,6 +206,8 @@ int main(int argc, char** argv) {
   bench::addScenarioCommand(app, result);
   bench::addSafetyCommand(app, result);
   experiments::addExperimentsCommand(app, result);
+  experiments::addCampaignCommand(app, result);
+  experiments::addCalibrateCommand(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

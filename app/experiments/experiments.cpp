@@ -3,13 +3,15 @@
 #include "app/experiments/path1.h"
 #include "app/experiments/path2.h"
 #include "app/experiments/reachable_space.h"
+#include "app/experiments/risk_truth.h"
 #include "app/experiments/servoing.h"
+#include "app/experiments/staircase.h"
 
 namespace tautline::experiments {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> all{
-      kLocalization, kPath1, kPath2, kReachableSpace, kServoing,
+      kLocalization, kPath1, kPath2, kReachableSpace, kServoing, kStaircase, kRiskTruth,
   };
   return all;
 }

@@ -165,6 +165,19 @@ void keepStraightTether(MapSpace& space, const PlanArguments& arguments, CellInd
   if (goal) check(*goal, "goal");
 }
 
+RiskSpace withFields(MapSpace space, const RiskParams& params, const FieldRequest& request,
+                     const Progress& progress) {
+  RiskSpace out{std::move(space), nullptr};
+  const VoxelMap& map = *out.space.map;
+  MapFields fields = computeFields(map, request, progress);
+  stopIfCancelled(progress);
+  std::shared_ptr<TautString> string;
+  if (map.reel) string = makeTautString(map, *map.reel);
+  out.risk =
+      std::make_unique<RiskModel>(out.space.map, std::move(fields), params, std::move(string));
+  return out;
+}
+
 }  // namespace
 
 InputError usage(const char* option, std::string problem, std::string allowed, std::string remedy) {
@@ -251,12 +264,17 @@ void RiskArguments::addTo(CLI::App& verb) {
       ->type_name("FILE");
 }
 
+RiskSpace makeRiskSpace(MapSpace space, const RiskParams& params, const Progress& progress) {
+  FieldRequest request = neededFields(params, *space.map);
+  request.unknown_is_obstacle = true;
+  return withFields(std::move(space), params, request, progress);
+}
+
 RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress, bool all_fields) {
   const RiskParams params =
       arguments.params.empty() ? RiskParams{} : loadConfig<RiskParams>(arguments.params);
-  RiskSpace out{loadMapSpace(arguments.map, progress), nullptr};
-  const VoxelMap& map = *out.space.map;
-  FieldRequest request = neededFields(params, map);
+  MapSpace space = loadMapSpace(arguments.map, progress);
+  FieldRequest request = neededFields(params, *space.map);
   if (all_fields) {
     request = {.distance = true,
                .width = true,
@@ -266,13 +284,7 @@ RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress
   }
   request.unknown_is_obstacle = !arguments.map.unknown_is_free;
   request.threads = arguments.map.threads;
-  MapFields fields = computeFields(map, request, progress);
-  stopIfCancelled(progress);
-  std::shared_ptr<TautString> string;
-  if (map.reel) string = makeTautString(map, *map.reel);
-  out.risk =
-      std::make_unique<RiskModel>(out.space.map, std::move(fields), params, std::move(string));
-  return out;
+  return withFields(std::move(space), params, request, progress);
 }
 
 void PlanArguments::addTo(CLI::App& verb) {

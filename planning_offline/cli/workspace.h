@@ -97,6 +97,9 @@ struct RiskSpace {
   MapSpace space;
   std::unique_ptr<RiskModel> risk;
 };
+/// The risk of a map that is there. Unknown space is an obstacle of the fields.
+[[nodiscard]] RiskSpace makeRiskSpace(MapSpace space, const RiskParams& params,
+                                      const Progress& progress);
 /// `all_fields`: every field and without limits, not only what the risk elements read.
 [[nodiscard]] RiskSpace loadRiskSpace(const RiskArguments& arguments, const Progress& progress,
                                       bool all_fields = false);
