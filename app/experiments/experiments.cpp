@@ -1,10 +1,17 @@
 #include "app/experiments/experiment.h"
 #include "app/experiments/localization.h"
+#include "app/experiments/real_logs.h"
+#include "app/experiments/tether_planning.h"
 
 namespace tautline::experiments {
 
 const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> all{kLocalization};
+  static const std::vector<Experiment> all{kLocalization, kTetherPlanning};
+  return all;
+}
+
+const std::vector<Experiment>& realExperiments() {
+  static const std::vector<Experiment> all{kRealLogs};
   return all;
 }
 
