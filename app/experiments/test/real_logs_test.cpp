@@ -56,41 +56,36 @@ struct Row {
   }
 };
 
-/// The published client on a line of waypoints, the last third of them round a contact: a sample a
-/// second that comes after the target by 0.5 m, waypoints passed one a row while within 0.4 m.
-std::vector<Row> madeFlight(double metres_per_count) {
-  std::vector<Row> rows;
-  const int waypoints = 150;
-  const auto waypoint = [&](int i) {
+constexpr int kWaypoints = 150;
+constexpr int kNoContact = kWaypoints;
+
+/// The published client on a line of waypoints, those from `first_round_contact` on round a
+/// contact: one sample a second of a drone that goes 2.5 waypoints meanwhile, and the next waypoint
+/// in the next row whenever one is within 0.4 m.
+std::vector<Row> madeFlight(double metres_per_count, int first_round_contact = 100) {
+  const auto waypoint = [](double i) {
     return Eigen::Vector3d(0.6 + 0.012 * i, 0.9 + 0.005 * i, 0.5 + 0.009 * i);
   };
+  const auto anchor = [&](int i) { return i < first_round_contact ? kReel : kContact; };
+  std::vector<Row> rows;
   int target = 0;
-  for (int second = 0; second < 59 && target < waypoints; ++second) {
+  for (int second = 0; second < 59; ++second) {
     Row row;
     row.second = second;
-    row.anchor = target < 100 ? kReel : kContact;
-    const Eigen::Vector3d way = waypoint(std::max(0, target - 20)) - row.anchor;
-    const double length = row.staticLength() + way.norm();
-    row.length = metres_per_count * std::round(length / metres_per_count);
-    row.elevation = std::round(100.0 * std::asin(way.y() / way.norm())) / 100.0;
-    row.azimuth = std::round(100.0 * std::atan2(-way.z(), way.x())) / 100.0;
-    for (bool reached = true; reached && target < waypoints;) {
-      row.target = waypoint(target);
-      row.anchor = target < 100 ? kReel : kContact;
-      rows.push_back(row);
-      reached = (row.target - row.position()).norm() < 0.4;
-      if (reached) ++target;
-    }
-    // Never stuck: the drone is where the target is, a moment later.
-    if (rows.size() > 1 && rows.back().target == waypoint(target)) {
-      Row near = rows.back();
-      const Eigen::Vector3d to = near.target - near.anchor;
-      near.length =
-          metres_per_count * std::round((near.staticLength() + to.norm()) / metres_per_count);
-      near.elevation = std::round(100.0 * std::asin(to.y() / to.norm())) / 100.0;
-      near.azimuth = std::round(100.0 * std::atan2(-to.z(), to.x())) / 100.0;
-      rows.push_back(near);
+    row.target = waypoint(target);
+    row.anchor = anchor(target);
+    const Eigen::Vector3d p = waypoint(std::min(2.5 * second, 1.0 * kWaypoints));
+    const Eigen::Vector3d free = p - row.anchor;
+    row.length =
+        metres_per_count * std::round((row.staticLength() + free.norm()) / metres_per_count);
+    row.elevation = std::round(100.0 * std::asin(free.y() / free.norm())) / 100.0;
+    row.azimuth = std::round(100.0 * std::atan2(-free.z(), free.x())) / 100.0;
+    rows.push_back(row);
+    while (target + 1 < kWaypoints && (row.target - row.position()).norm() < 0.4) {
       ++target;
+      row.target = waypoint(target);
+      row.anchor = anchor(target);
+      rows.push_back(row);
     }
   }
   return rows;
@@ -149,7 +144,7 @@ TEST(ReplayedFlight, FindsTheLengthOfACount) {
 TEST(ReplayedFlight, TheSupervisorSeesSensorsThatGoSilent) {
   StationConfig station;
   station.run_mode = RunMode::kSim;
-  std::vector<Row> rows = madeFlight(0.00406);
+  std::vector<Row> rows = madeFlight(0.00406, kNoContact);
   const SupervisorVerdict good = verdictOn(recorded(rows), station);
   EXPECT_EQ(good.last_mode, Mode::kAuto);
   EXPECT_FALSE(good.intervened.has_value());

@@ -11,7 +11,7 @@ namespace tautline::experiments {
 namespace {
 
 TEST(TetherPlanning, OursFliesRoundTheShaftWithOneContact) {
-  const Setup setup =
+  const experiments::Setup setup =
       loadSetup(std::filesystem::path(TAUTLINE_SOURCE_DIR) / "config/experiments", true, 1);
   int flown = 0;
   for (const Trial& trial : kTetherPlanning.trials(setup)) {
