@@ -213,6 +213,7 @@ SupervisorVerdict verdictOn(const Recording& recording, const StationConfig& sta
   constexpr Duration kPeriod = std::chrono::milliseconds(10);
   constexpr Duration kParked = std::chrono::seconds(6);
   constexpr Duration kClimb = std::chrono::seconds(1);
+  constexpr double kUnknownVelocity = 0.5;  // [m/s]
   // What the logs do not have is not judged: attitude, and commands.
   constexpr ConditionSet kNotLogged{Condition::kAttitudeStale};
   const Eigen::Vector3d reel = reelOf(recording);
@@ -221,6 +222,8 @@ SupervisorVerdict verdictOn(const Recording& recording, const StationConfig& sta
 
   CoreConfig core = station.core;
   core.guidance.home_position_m = home;
+  // Without the commands the filter has to allow for any velocity that the vehicle can have.
+  core.localizer.process.velocity_sigma_mps = kUnknownVelocity;
   core.localizer.noise.use_altitude = false;
   core.detect.contact.height_residual_m = 100.0;
   TelegramPort port(telegramsOf(recording, kParked, home));
