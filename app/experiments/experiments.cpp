@@ -1,12 +1,16 @@
 #include "app/experiments/experiment.h"
 #include "app/experiments/localization.h"
+#include "app/experiments/path1.h"
+#include "app/experiments/path2.h"
+#include "app/experiments/reachable_space.h"
 #include "app/experiments/real_logs.h"
 #include "app/experiments/tether_planning.h"
 
 namespace tautline::experiments {
 
 const std::vector<Experiment>& experiments() {
-  static const std::vector<Experiment> all{kLocalization, kTetherPlanning};
+  static const std::vector<Experiment> all{kLocalization, kPath1, kPath2, kReachableSpace,
+                                           kTetherPlanning};
   return all;
 }
 

@@ -173,7 +173,8 @@ void ConditionMonitor::watchVehicle(const MonitorInput& in) noexcept {
   if (f.vehicle.valid && f.vehicle.value.backup_battery_voltage > 0.0)
     backup = f.vehicle.value.backup_battery_voltage;
   power_.update(battery, backup, findings_);
-  if (f.vehicle.sequence > 0) findings_.raised = findings_.raised | conditionsOf(f.vehicle.value);
+  if (config_.detect.vehicle_signs && f.vehicle.sequence > 0)
+    findings_.raised = findings_.raised | conditionsOf(f.vehicle.value);
   // Motors that stop without being told to; at the end of a landing they are.
   constexpr ModeMask kMotorsWanted = maskOf(
       {Mode::kHold, Mode::kTeleop, Mode::kAuto, Mode::kFailsafe, Mode::kBackUp, Mode::kReturn});

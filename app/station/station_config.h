@@ -160,11 +160,19 @@ struct StationConfig {
 
   /// Throws InputError for what a single range cannot say.
   void validate() const {
-    if (device != DeviceKind::kReplay || run_mode != RunMode::kReal) return;
-    throw InputError({.key = "run_mode",
-                      .problem = "is REAL, and a recording moves nothing",
-                      .allowed = "SIM or HIL with device = \"replay\"",
-                      .remedy = "set run_mode = \"SIM\""});
+    if (run_mode != RunMode::kReal) return;
+    if (device == DeviceKind::kReplay) {
+      throw InputError({.key = "run_mode",
+                        .problem = "is REAL, and a recording moves nothing",
+                        .allowed = "SIM or HIL with device = \"replay\"",
+                        .remedy = "set run_mode = \"SIM\""});
+    }
+    if (!core.detect.vehicle_signs) {
+      throw InputError({.key = "core.detect.vehicle_signs",
+                        .problem = "is false, and a real vehicle's faults must be acted on",
+                        .allowed = "true, or run_mode SIM or HIL",
+                        .remedy = "leave the key out"});
+    }
   }
 };
 

@@ -23,6 +23,7 @@ struct DetectConfig {
   LinkWatchConfig link;
   HostWatchConfig host;
   ParkedCheckConfig parked;
+  bool vehicle_signs{true};  ///< Heed what the vehicle says of itself; false only on a bench.
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -34,6 +35,8 @@ struct DetectConfig {
     v.section("link", link);
     v.section("host", host);
     v.section("parked", parked);
+    v.field("vehicle_signs", vehicle_signs,
+            "heed the vehicle's own flags and flight modes; false, as published: only on a bench");
   }
 };
 

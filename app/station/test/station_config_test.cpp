@@ -41,6 +41,9 @@ TEST(StationConfig, RefusesWhatMakesNoSense) {
   EXPECT_THROW(parse("[can]\nbitrate = 500000\n"), InputError);
   EXPECT_THROW(parse("[replay]\nspeed = 0.0\n"), InputError);
   EXPECT_THROW(parse("device = \"replay\"\nrun_mode = \"REAL\"\n"), InputError);
+  const std::string deaf = "[core.detect]\nvehicle_signs = false\n";
+  EXPECT_THROW(parse("run_mode = \"REAL\"\n" + deaf), InputError);
+  EXPECT_FALSE(parse("run_mode = \"HIL\"\n" + deaf).core.detect.vehicle_signs);
 }
 
 TEST(StationDevice, MakesEachKindAndSaysWhyItIsNotOpen) {

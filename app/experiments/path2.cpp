@@ -1,0 +1,89 @@
+#include "app/experiments/path2.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/experiments/path_trials.h"
+
+namespace tautline::experiments {
+namespace {
+
+/// From corner to corner at constant length and elevation: half a circle with half the way as its
+/// radius.
+constexpr double kFullSemicircle = 2.12;  // [m]
+constexpr double kGoal = 0.10;            // [m]
+
+PathPlan planOf(const Setup& setup) {
+  const std::uint64_t published = setup.quick ? 1 : 3;
+  const std::uint64_t ours = setup.quick ? 4 : 200;
+  return {
+      .path = "path2", .trials = {published, published, ours}, .limit = std::chrono::seconds(300)};
+}
+
+std::vector<Trial> trials(const Setup& setup) { return pathTrials(setup, planOf(setup)); }
+
+Findings judge(const Setup& setup, const Results& results) {
+  const PathPlan plan = planOf(setup);
+  const PathTable table = pathTable(plan, results);
+  const auto& position = of(table, Primitive::kPosition);
+  const auto& velocity = of(table, Primitive::kVelocity);
+  const auto& ours = of(table, Primitive::kTautline);
+  Findings findings;
+  std::vector<Row>& rows = findings.rows;
+  int growing = 0;
+  double worst = 0.0;
+  for (std::size_t k = 0; k < kIntervals.size(); ++k) {
+    rows.push_back(
+        {.figure = fmt::format("mean cross-track, position law, every {:g} m", kIntervals[k]),
+         .unit = "m",
+         .as_published = position[k].mean,
+         .tautline = ours[k].mean,
+         .tautline_band = Band{.max = kGoal}});
+    if (k > 0 && position[k].mean > position[k - 1].mean) ++growing;
+    worst = std::max(worst, ours[k].max);
+  }
+  rows.push_back({.figure = "position law, intervals at which it is worse than at the one before",
+                  .published = 4.0,
+                  .as_published = growing,
+                  .as_published_band = Band{4.0, 4.0}});
+  rows.push_back(
+      {.figure = "position law, largest deviation with two waypoints",
+       .unit = "m",
+       .as_published = position.back().max,
+       .tautline = worst,
+       .as_published_band = Band{kFullSemicircle / 2.0, 1.25 * kFullSemicircle},
+       .note = "a full semicircle is 2.12 m from the line; ours: largest of all flights"});
+  const double flown = total(velocity, &PathMeans::flights);
+  const double crossings = total(ours, &PathMeans::flights);
+  rows.push_back({.figure = "velocity law, flights trapped at the pole",
+                  .unit = "%",
+                  .published = 100.0,
+                  .as_published = 100.0 * total(velocity, &PathMeans::trapped) / flown,
+                  .tautline = 100.0 * total(ours, &PathMeans::trapped) / crossings,
+                  .as_published_band = Band{100.0, 100.0},
+                  .tautline_band = Band{0.0, 0.0},
+                  .note = "trapped: longer than 30 s within 0.5 m of the axis"});
+  rows.push_back({.figure = fmt::format("paths crossed, of {:g}", crossings),
+                  .tautline = total(ours, &PathMeans::completed),
+                  .tautline_band = Band{crossings, crossings}});
+  findings.sheets.push_back(pathSheet(table));
+  findings.pictures.push_back(
+      {"tracks", "First trial of each law, seen from above", tracksFigure(setup, plan, table)});
+  findings.pictures.push_back({"accuracy",
+                               "Accuracy and smoothness against the interval of waypoints",
+                               accuracyFigure(table)});
+  return findings;
+}
+
+}  // namespace
+
+const Experiment kPath2{"path2", "Motion primitives, path 2",
+                        "Level and straight over the reel, from the first quadrant to the third, "
+                        "1.5 m up; otherwise as "
+                        "path 1. Over the reel azimuth means nothing: the position law flies "
+                        "round, the velocity law is "
+                        "trapped.",
+                        trials, judge};
+
+}  // namespace tautline::experiments
