@@ -14,6 +14,7 @@
 #include "planning_offline/cli/path_file.h"
 #include "planning_offline/map/load_map.h"
 #include "planning_offline/tether/contact_plan.h"
+#include "planning_offline/tether/hanging_contacts.h"
 
 namespace tautline::experiments {
 namespace {
@@ -93,9 +94,14 @@ Planned plan(const Setup& setup, const Side& side, const Set& set) {
   planning::PathFileOptions options;
   options.reel = map.reel;
   const planning::GivenPath path = planning::readPath(file.string(), options);
-  const planning::ContactPlan contacts = planning::planContacts(
-      map, *map.reel, path.points,
-      {.algorithm = side.ours ? ContactAlgorithm::kExact : ContactAlgorithm::kAsPublished});
+  planning::ContactOptions planner;
+  planner.algorithm = side.ours ? ContactAlgorithm::kExact : ContactAlgorithm::kAsPublished;
+  planning::ContactPlan contacts = planning::planContacts(map, *map.reel, path.points, planner);
+  const LocalizerConfig& tether = setup.tautline.core.localizer;
+  if (side.ours) {
+    planning::hangContacts(map, *map.reel, {tether.tether_weight_n_per_m, tether.nominal_tension_n},
+                           contacts);
+  }
   Planned planned;
   for (const Eigen::Vector3d& point : path.points) planned.path.push_back(point - *map.reel);
   planned.mission = planning::missionOf(contacts, path.orders, map, set.name, file).plan;
@@ -125,7 +131,9 @@ json fly(const Setup& setup, const Side& side, const Set& set, int trial) {
     if (p.t < next) continue;
     next = p.t + kTrackPeriod;
     track.push_back({p.t, p.p_WD.x(), p.p_WD.y(), p.p_WD.z(), p.contacts, error,
-                     (p.p_WD_estimate - p.p_WD).norm(), p.tension});
+                     (p.p_WD_estimate - p.p_WD).norm(), p.tension, p.length, p.true_contacts,
+                     p.p_WA.x(), p.p_WA.y(), p.p_WA.z(), p.p_WA_planned.y(), p.p_WD_estimate.x(),
+                     p.p_WD_estimate.y(), p.p_WD_estimate.z()});
   }
   json result = {
       {"completed", flight.result.completed},
