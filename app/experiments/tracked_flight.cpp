@@ -21,7 +21,10 @@ TrackedFlight flyTracked(const bench::LockstepConfig& config, const MissionPlan&
   const auto follow = [&](const bench::Lockstep& b) {
     const StepOutput& out = b.output();
     if (out.supervision.mode != Mode::kAuto) {
-      if (began && flight.last_mode == Mode::kAuto) flight.last_mode = out.supervision.mode;
+      if (began && flight.last_mode == Mode::kAuto) {
+        flight.last_mode = out.supervision.mode;
+        flight.last_reasons = out.supervision.reasons;
+      }
       return;
     }
     flight.last_mode = Mode::kAuto;

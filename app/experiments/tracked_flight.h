@@ -30,6 +30,7 @@ struct TrackPoint {
 struct TrackedFlight {
   bench::FlightResult result;
   Mode last_mode{Mode::kStandby};  ///< When the mission ended.
+  ConditionSet last_reasons{};     ///< Why, if nobody asked for it.
   std::vector<TrackPoint> track;   ///< 20 a second, from NAVIGATE to the end of the mission.
 };
 
