@@ -18,7 +18,7 @@ TEST(TetherPlanning, OursFliesRoundTheShaftWithOneContact) {
     if (trial.name != "Tautline, one contact, relaxed, 1") continue;
     ++flown;
     const nlohmann::json result = trial.run();
-    EXPECT_TRUE(result.at("completed").get<bool>()) << result.at("last_mode");
+    EXPECT_TRUE(result.at("completed").get<bool>()) << result.at("ended");
     EXPECT_EQ(result.at("crash"), "none");
     EXPECT_FALSE(result.at("by_contacts").at(0).is_null());
     EXPECT_FALSE(result.at("by_contacts").at(1).is_null());
