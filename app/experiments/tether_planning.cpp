@@ -26,6 +26,7 @@ constexpr const char* kScene = "shaft.scene.toml";
 constexpr int kTrials = 6;       // of each set and station, as published
 constexpr int kQuickTrials = 1;  // of them
 constexpr std::size_t kMostContacts = 2;
+constexpr double kSpeed = 0.12;  // what the published position law makes of it [m/s]
 constexpr Duration kLimit = std::chrono::seconds(600);
 
 struct Set {
@@ -95,7 +96,8 @@ Planned plan(const Setup& setup, const Side& side, const Set& set) {
   const planning::VoxelMap map = planning::loadMap(scenes(setup) / kScene, {});
   planning::PathFileOptions options;
   options.reel = map.reel;
-  const planning::GivenPath path = planning::readPath(file.string(), options);
+  planning::GivenPath path = planning::readPath(file.string(), options);
+  for (Waypoint& waypoint : path.orders) waypoint.speed = kSpeed;
   planning::ContactOptions planner;
   planner.algorithm = side.ours ? ContactAlgorithm::kExact : ContactAlgorithm::kAsPublished;
   planning::ContactPlan contacts = planning::planContacts(map, *map.reel, path.points, planner);
