@@ -16,7 +16,6 @@ constexpr double kHalfPi = std::numbers::pi / 2.0;
 constexpr double kMoveRate = 110.0;
 constexpr double kMoveGain = 5.0;       // slows down before the target [1/s]
 constexpr double kMoveDone = 0.5;       // [counts]
-constexpr double kSlackTension = 0.15;  // a tether that only hangs pulls less [N]
 constexpr Duration kSlackTime = std::chrono::milliseconds(300);
 constexpr Duration kStopShown = std::chrono::seconds(2);  // mode 49 after a normal stop
 constexpr double kBackupLow = 3.5;                        // [V]
@@ -234,7 +233,7 @@ bool FotokiteEmulator::flying() const noexcept {
 
 void FotokiteEmulator::stepTimeouts() noexcept {
   const Time now = plant_.clock();
-  if (plant_.truth().tension >= kSlackTension || !flying()) slack_since_ = now;
+  if (plant_.truth().tension >= config_.slack_tension || !flying()) slack_since_ = now;
   if (low_launch_ && plant_.truth().tangent_elevation >= config_.low_launch_angle) {
     low_launch_ = false;
   }

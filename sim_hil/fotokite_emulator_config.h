@@ -15,6 +15,7 @@ struct FotokiteEmulatorConfig {
   double angle_resolution{0.01};  ///< Of the angles in !Pos [rad]; the real device has 0.01.
   double low_launch_angle{
       -0.35};                    ///< Flag LOW_LAUNCH_ANGLE at take-off below this elevation [rad].
+  double slack_tension{0.15};    ///< Flag NO_TETHER_DETECTED below this pull at the vehicle [N].
   double command_timeout{0.5};   ///< Set-points are held without commands for this long [s].
   double landing_timeout{10.0};  ///< Emergency landing without commands for this long [s].
 
@@ -28,6 +29,8 @@ struct FotokiteEmulatorConfig {
     v.field("angle_resolution_rad", angle_resolution, Range{1e-5, 0.1}, "of the angles in !Pos");
     v.field("low_launch_angle_rad", low_launch_angle, Range{-1.5, 1.5},
             "flag LOW_LAUNCH_ANGLE at take-off below this elevation");
+    v.field("slack_tension_n", slack_tension, Range{0, 10},
+            "flag NO_TETHER_DETECTED below this pull at the vehicle for 0.3 s");
     v.field("command_timeout_s", command_timeout, Range{0.1, 60},
             "set-points are held without commands for this long");
     v.field("landing_timeout_s", landing_timeout, Range{0.5, 600},

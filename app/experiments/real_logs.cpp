@@ -69,23 +69,16 @@ json trackOf(const Recording& recording) {
   return track;
 }
 
-std::string namesOf(ConditionSet set) {
-  std::string names;
-  for (const ConditionInfo& info : kConditionInfos)
-    if (set.has(info.condition)) names += (names.empty() ? "" : " ") + std::string(info.name);
-  return names;
-}
-
 json jsonOf(const SupervisorVerdict& verdict) {
   json raised = json::array();
   for (const SupervisorVerdict::Raised& r : verdict.raised) {
     raised.push_back(
-        {{"condition", namesOf({r.condition})}, {"first_s", r.first}, {"lasted_s", r.lasted}});
+        {{"condition", describe(ConditionSet{r.condition})}, {"first_s", r.first}, {"lasted_s", r.lasted}});
   }
   return {{"intervened_s", verdict.intervened ? json(*verdict.intervened) : json(nullptr)},
           {"mode", nameOf(verdict.mode, kModeNames)},
           {"last_mode", nameOf(verdict.last_mode, kModeNames)},
-          {"reasons", namesOf(verdict.reasons)},
+          {"reasons", describe(verdict.reasons)},
           {"raised", raised},
           {"usable", verdict.usable},
           {"reel_scale", verdict.reel_scale},

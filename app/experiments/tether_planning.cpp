@@ -113,14 +113,6 @@ Planned plan(const Setup& setup, const Side& side, const Set& set) {
   return planned;
 }
 
-/// " BATTERY OSCILLATION"
-std::string namesOf(ConditionSet set) {
-  std::string names;
-  for (const ConditionInfo& info : kConditionInfos)
-    if (set.has(info.condition)) names += " " + std::string(info.name);
-  return names;
-}
-
 /// A sum that knows of how many; null of none.
 class Mean {
  public:
@@ -160,7 +152,7 @@ json fly(const Setup& setup, const Side& side, const Set& set, int trial) {
   json result = {{"completed", flight.result.completed},
                  {"landed", flight.result.landed},
                  {"crash", nameOf(flight.result.crash, sim::kCrashReasonNames)},
-                 {"ended", nameOf(flight.last_mode, kModeNames) + namesOf(flight.last_reasons)},
+                 {"ended", nameOf(flight.last_mode, kModeNames) + (" " + flight.reasons)},
                  {"error", all.value()},
                  {"contact_off", contact_off.value()},
                  {"by_contacts", json::array()}};

@@ -20,11 +20,10 @@ TrackedFlight flyTracked(const bench::LockstepConfig& config, const MissionPlan&
   Time next{};
   const auto follow = [&](const bench::Lockstep& b) {
     const StepOutput& out = b.output();
+    if (flight.reasons.empty() && !out.supervision.reasons.empty())
+      flight.reasons = describe(out.supervision.reasons);
     if (out.supervision.mode != Mode::kAuto) {
-      if (began && flight.last_mode == Mode::kAuto) {
-        flight.last_mode = out.supervision.mode;
-        flight.last_reasons = out.supervision.reasons;
-      }
+      if (began && flight.last_mode == Mode::kAuto) flight.last_mode = out.supervision.mode;
       return;
     }
     flight.last_mode = Mode::kAuto;

@@ -5,6 +5,7 @@
 /// believed it to be, and the active contact, while the mission was flown. Not real-time safe.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,8 +31,8 @@ struct TrackPoint {
 struct TrackedFlight {
   bench::FlightResult result;
   Mode last_mode{Mode::kStandby};  ///< When the mission ended.
-  ConditionSet last_reasons{};     ///< Why, if nobody asked for it.
-  std::vector<TrackPoint> track;   ///< 20 a second, from NAVIGATE to the end of the mission.
+  std::string reasons;  ///< First conditions that changed the mode by themselves; empty: none did.
+  std::vector<TrackPoint> track;  ///< 20 a second, from NAVIGATE to the end of the mission.
 };
 
 /// Arms, takes off, flies the mission, lands.
