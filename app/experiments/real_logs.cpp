@@ -72,8 +72,9 @@ json trackOf(const Recording& recording) {
 json jsonOf(const SupervisorVerdict& verdict) {
   json raised = json::array();
   for (const SupervisorVerdict::Raised& r : verdict.raised) {
-    raised.push_back(
-        {{"condition", describe(ConditionSet{r.condition})}, {"first_s", r.first}, {"lasted_s", r.lasted}});
+    raised.push_back({{"condition", describe(ConditionSet{r.condition})},
+                      {"first_s", r.first},
+                      {"lasted_s", r.lasted}});
   }
   return {{"intervened_s", verdict.intervened ? json(*verdict.intervened) : json(nullptr)},
           {"mode", nameOf(verdict.mode, kModeNames)},

@@ -108,6 +108,9 @@ Planned plan(const Setup& setup, const Side& side, const Set& set) {
   }
   Planned planned;
   for (const Eigen::Vector3d& point : path.points) planned.path.push_back(point - *map.reel);
+  // The take-off ends at the first point.
+  contacts.states.erase(contacts.states.begin());
+  path.orders.erase(path.orders.begin());
   planned.mission = planning::missionOf(contacts, path.orders, map, set.name, file).plan;
   planned.mission->hash = 1;
   return planned;
