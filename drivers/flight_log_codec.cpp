@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -40,9 +41,15 @@ std::optional<std::int64_t> secondOf(std::string_view stamp) noexcept {
   return time.time_since_epoch().count();
 }
 
+/// NaN is set: a result, if no good one.
+bool isSet(double value) noexcept {
+  constexpr double kBeyond = 1e100;
+  return std::fpclassify(value) != FP_SUBNORMAL && !(std::abs(value) > kBeyond);
+}
+
 }  // namespace
 
-ParsedFlightLogRow parseFlightLogRow(std::string_view line) noexcept {
+ParsedFlightLogRow parseFlightLogRow(std::string_view line, FlightLogLayout layout) noexcept {
   ParsedFlightLogRow out;
   std::array<double, kColumns> value{};
   std::size_t count = 0;
@@ -73,17 +80,34 @@ ParsedFlightLogRow parseFlightLogRow(std::string_view line) noexcept {
   }
   if (count != kColumns && count != kColumnsWithoutContact)
     return fail(FlightLogError::kFieldCount);
+  const bool has_contact = count == kColumns;
+  const bool last = layout == FlightLogLayout::kPositionLast && !has_contact;
+  const auto point = [&value](std::size_t at) {
+    return Eigen::Vector3d(value[at], value[at + 1], value[at + 2]);
+  };
+  const std::size_t target = last ? 4 : 7;
+  const std::size_t present = last ? 7 : 10;
   FlightLogRow& row = out.row;
-  row.p_WD = {value[4], value[5], value[6]};
-  row.length = value[10];
-  row.elevation = value[11];
-  row.azimuth = value[12];
-  if (count == kColumns) row.p_WA = {value[13], value[14], value[15]};
+  row.p_WTarget = point(1);
+  row.target_length = value[target];
+  row.target_elevation = value[target + 1];
+  row.target_azimuth = value[target + 2];
+  row.acceptance_radius = value[count - 3];
+  row.reached = value[count - 1] != 0.0;
+  row.p_WD = point(last ? 10 : 4);
+  row.length = value[present];
+  row.elevation = value[present + 1];
+  row.azimuth = value[present + 2];
+  if (has_contact) row.p_WA = point(13);
+  bool set = isSet(row.length) && isSet(row.elevation) && isSet(row.azimuth);
   bool good = kLogLengthRange.contains(row.length) && kLogElevationRange.contains(row.elevation) &&
               kLogAzimuthRange.contains(row.azimuth);
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < 3; ++i) {
+    set = set && isSet(row.p_WD[i]) && isSet(row.p_WA[i]);
     good =
         good && kLogPositionRange.contains(row.p_WD[i]) && kLogPositionRange.contains(row.p_WA[i]);
+  }
+  if (!set) return fail(FlightLogError::kUninitialized);
   return good ? out : fail(FlightLogError::kOutOfRange);
 }
 

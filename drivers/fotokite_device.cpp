@@ -134,7 +134,9 @@ void FotokiteDevice::accept(Time now, const fotokite::ParsedLine& line,
     const Eigen::Vector3d view_W = R_WI_ * (unit(gimbal->q) * Eigen::Vector3d::UnitX());
     update(frame.gimbal, now, GimbalReading{.pitch = std::asin(std::clamp(view_W.y(), -1.0, 1.0))});
   } else if (const auto* position = std::get_if<fotokite::Position>(&line.value)) {
-    const double theta = std::clamp(kHalfPi - position->elevation_from_vertical, -kHalfPi, kHalfPi);
+    const double theta =
+        std::clamp(kHalfPi - position->elevation_from_vertical + config_.elevation_offset_rad,
+                   -kHalfPi, kHalfPi);
     const double phi = wrapAngle(position->azimuth + kHalfPi + config_.azimuth_offset_rad);
     update(frame.angles, now,
            TetherAngles{.theta = theta, .phi = phi, .altitude = position->altitude});

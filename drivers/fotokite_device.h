@@ -30,9 +30,10 @@ inline constexpr std::array<EnumName<VerticalAxis>, 2> kVerticalAxisNames{
 
 struct FotokiteConfig {
   double length_scale_m_per_count{fotokite::kMetresPerCount};
-  double length_offset_m{0.0};     ///< Tether out when the encoder reads 0.
-  bool invert_length{false};       ///< Counts grow when tether is reeled in.
-  double azimuth_offset_rad{0.0};  ///< World azimuth minus the device's.
+  double length_offset_m{0.0};       ///< Tether out when the encoder reads 0.
+  bool invert_length{false};         ///< Counts grow when tether is reeled in.
+  double azimuth_offset_rad{0.0};    ///< World azimuth minus the device's.
+  double elevation_offset_rad{0.0};  ///< Above what the device's angle from the vertical says.
   VerticalAxis attitude_z{VerticalAxis::kDown};
   double telemetry_rate_hz{fotokite::kDefaultTelemetryRate};
   double command_rate_hz{20.0};
@@ -46,6 +47,8 @@ struct FotokiteConfig {
     v.field("invert_length", invert_length, "encoder counts grow when tether is reeled in");
     v.field("azimuth_offset_rad", azimuth_offset_rad, Range{-6.3, 6.3},
             "added to the device's azimuth; zero when it is initialized facing +x");
+    v.field("elevation_offset_rad", elevation_offset_rad, Range{-0.2, 0.2},
+            "added to the device's elevation; calibrate with a tether of known elevation");
     v.choice("attitude_z", attitude_z, kVerticalAxisNames,
              "z axis of the attitude and gimbal quaternions");
     v.field("telemetry_rate_hz", telemetry_rate_hz, Range{1, 100},

@@ -52,6 +52,7 @@ struct Sheet {
   std::string name;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
+  std::string caption{};  ///< Not empty: the table is on the page, too.
 };
 
 /// <experiment>_<name>.svg, and on the page.
@@ -99,5 +100,8 @@ struct Experiment {
 
 /// All of them, in the order of the report.
 [[nodiscard]] const std::vector<Experiment>& experiments();
+
+/// Those on real flights: a report of their own, for not everybody has the data.
+[[nodiscard]] const std::vector<Experiment>& realExperiments();
 
 }  // namespace tautline::experiments

@@ -3,16 +3,24 @@
 #include "app/experiments/path1.h"
 #include "app/experiments/path2.h"
 #include "app/experiments/reachable_space.h"
+#include "app/experiments/real_logs.h"
 #include "app/experiments/risk_truth.h"
 #include "app/experiments/servoing.h"
 #include "app/experiments/staircase.h"
+#include "app/experiments/tether_planning.h"
 
 namespace tautline::experiments {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> all{
-      kLocalization, kPath1, kPath2, kReachableSpace, kServoing, kStaircase, kRiskTruth,
+      kLocalization,   kPath1,    kPath2,     kReachableSpace,
+      kTetherPlanning, kServoing, kStaircase, kRiskTruth,
   };
+  return all;
+}
+
+const std::vector<Experiment>& realExperiments() {
+  static const std::vector<Experiment> all{kRealLogs};
   return all;
 }
 

@@ -83,6 +83,12 @@ std::string pageOf(const Setup& setup, const std::vector<Chapter>& chapters,
     for (const Row& row : chapters[c].findings.rows)
       table.add(cells(row), row.pass() ? "" : "error");
     body += table.html();
+    for (const Sheet& sheet : chapters[c].findings.sheets) {
+      if (sheet.caption.empty()) continue;
+      report::HtmlTable numbers(sheet.columns);
+      for (const std::vector<std::string>& row : sheet.rows) numbers.add(row);
+      body += "<p>" + escaped(sheet.caption) + "</p>\n" + numbers.html();
+    }
     for (const report::EmbeddedPicture& picture : pictures[c]) body += htmlFigure(picture);
   }
   return report::htmlPage("Experiments", body);

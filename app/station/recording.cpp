@@ -41,16 +41,44 @@ Recording readLcmLog(const std::filesystem::path& file) {
   return out;
 }
 
-/// The rows of one flight, without those before the tether was out.
-std::vector<FlightLogRow> readRows(const std::filesystem::path& file, std::int64_t& skipped) {
+std::vector<std::string> readLines(const std::filesystem::path& file) {
   std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// Nothing in a row says which layout it has: it is the one in which positions follow from length
+/// and angles.
+FlightLogLayout layoutOf(const std::vector<std::string>& lines) {
+  constexpr double kFollows = 0.02;  // [m]; the reel stands a little beside the origin
+  const auto fitting = [&](FlightLogLayout layout) {
+    return std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
+      const ParsedFlightLogRow parsed = parseFlightLogRow(line, layout);
+      if (parsed.error != FlightLogError::kNone) return false;
+      const FlightLogRow& row = parsed.row;
+      const Eigen::Vector3d p =
+          toCartesian({row.length, row.elevation, row.azimuth + std::numbers::pi / 2.0});
+      return row.length > kFlying && (row.p_WD - p).norm() < kFollows;
+    });
+  };
+  return fitting(FlightLogLayout::kPositionLast) > fitting(FlightLogLayout::kPositionFirst)
+             ? FlightLogLayout::kPositionLast
+             : FlightLogLayout::kPositionFirst;
+}
+
+/// The rows of one flight, without those before the tether was out.
+std::vector<FlightLogRow> readRows(const std::filesystem::path& file, Recording& counts) {
+  const std::vector<std::string> lines = readLines(file);
+  const FlightLogLayout layout = layoutOf(lines);
   std::vector<FlightLogRow> rows;
-  for (std::string line; std::getline(in, line);) {
-    const ParsedFlightLogRow parsed = parseFlightLogRow(line);
+  for (const std::string& line : lines) {
+    const ParsedFlightLogRow parsed = parseFlightLogRow(line, layout);
     const bool good = parsed.error == FlightLogError::kNone && parsed.row.length > kFlying &&
                       (rows.empty() || parsed.row.second >= rows.back().second);
     if (good) rows.push_back(parsed.row);
-    skipped += good ? 0 : 1;
+    counts.skipped += good ? 0 : 1;
+    counts.uninitialized += parsed.error == FlightLogError::kUninitialized ? 1 : 0;
   }
   return rows;
 }
@@ -69,7 +97,7 @@ Anchor anchorOf(const FlightLogRow& row) {
 /// second, whether or not it had moved.
 Recording readTextLog(const std::filesystem::path& file) {
   Recording out;
-  const std::vector<FlightLogRow> rows = readRows(file, out.skipped);
+  const std::vector<FlightLogRow> rows = readRows(file, out);
   SensorFrame frame;
   frame.link.connected = true;
   for (std::size_t i = 0; i < rows.size();) {
@@ -100,7 +128,7 @@ Recording readTextLog(const std::filesystem::path& file) {
                               .flags = 0,
                               .backup_battery_voltage = 0.0});
       out.cycles.push_back({now, frame});
-      out.poses.push_back({anchor, row.p_WD});
+      out.poses.push_back({anchor, row.p_WD, row});
     }
     i = end;
   }

@@ -12,6 +12,7 @@
 #include "common/estimate.h"
 #include "common/time.h"
 #include "common/vehicle.h"
+#include "drivers/flight_log_codec.h"
 
 namespace tautline {
 
@@ -25,12 +26,14 @@ struct RecordedCycle {
 struct RecordedPose {
   Anchor anchor;         ///< The contact that its program worked with.
   Eigen::Vector3d p_WD;  ///< Where its program thought the drone was [m].
+  FlightLogRow row;      ///< All of it, as logged.
 };
 
 struct Recording {
   std::vector<RecordedCycle> cycles;  ///< At least one, in the order of time.
   std::vector<RecordedPose> poses;    ///< Text logs: as many; otherwise empty.
   std::int64_t skipped{0};            ///< Text logs: rows that were no good, or before the flight.
+  std::int64_t uninitialized{0};      ///< Of these, rows with numbers that were never set.
 
   [[nodiscard]] bool isTextLog() const noexcept { return !poses.empty(); }
   [[nodiscard]] Duration length() const noexcept { return cycles.back().now - cycles.front().now; }

@@ -32,6 +32,12 @@ TEST(FlightLogCodec, ReadsTheColumnsThatAreUsed) {
   EXPECT_EQ(parsed.row.length, 0.5075);
   EXPECT_EQ(parsed.row.elevation, 1.57);
   EXPECT_EQ(parsed.row.azimuth, -0.52);
+  EXPECT_TRUE(parsed.row.p_WTarget.isApprox(Eigen::Vector3d(0.172676, 0.657591, 0.172607)));
+  EXPECT_EQ(parsed.row.target_length, 0.696742);
+  EXPECT_EQ(parsed.row.target_elevation, 1.21992);
+  EXPECT_EQ(parsed.row.target_azimuth, -0.785194);
+  EXPECT_EQ(parsed.row.acceptance_radius, 0.4);
+  EXPECT_TRUE(parsed.row.reached);
   EXPECT_TRUE(parsed.row.p_WA.isApprox(Eigen::Vector3d::Constant(0.0033)));
   EXPECT_EQ(parseFlightLogRow(kRow + "\r").error, FlightLogError::kNone);
 }
@@ -45,6 +51,21 @@ TEST(FlightLogCodec, ReadsTheEarlierRowsWithoutContact) {
   EXPECT_TRUE(parsed.row.p_WA.isZero());
 }
 
+TEST(FlightLogCodec, ReadsTheEarliestRowsWithThePositionLast) {
+  const ParsedFlightLogRow parsed = parseFlightLogRow(
+      "20180130185438 0.165 1.33 0.165 1.40209 nan 0.785398 0.76328 1.27 -0.6 0.186646 0.729009 "
+      "0.127691 4.9e-324 4.9e-324 6.9e-310 1 0.602536 1 ",
+      FlightLogLayout::kPositionLast);
+  ASSERT_EQ(parsed.error, FlightLogError::kNone);
+  EXPECT_EQ(parsed.row.target_length, 1.40209);
+  EXPECT_EQ(parsed.row.length, 0.76328);
+  EXPECT_EQ(parsed.row.elevation, 1.27);
+  EXPECT_EQ(parsed.row.azimuth, -0.6);
+  EXPECT_TRUE(parsed.row.p_WD.isApprox(Eigen::Vector3d(0.186646, 0.729009, 0.127691)));
+  EXPECT_EQ(parsed.row.acceptance_radius, 1.0);
+  EXPECT_TRUE(parsed.row.reached);
+}
+
 TEST(FlightLogCodec, NamesWhatIsWrong) {
   EXPECT_EQ(parseFlightLogRow("").error, FlightLogError::kFieldCount);
   EXPECT_EQ(parseFlightLogRow(kRow + "1").error, FlightLogError::kFieldCount);
@@ -54,7 +75,10 @@ TEST(FlightLogCodec, NamesWhatIsWrong) {
   EXPECT_EQ(parseFlightLogRow(replaced(8, "1.2x")).error, FlightLogError::kNotANumber);
   EXPECT_EQ(parseFlightLogRow(replaced(10, "-0.1")).error, FlightLogError::kOutOfRange);
   EXPECT_EQ(parseFlightLogRow(replaced(11, "nan")).error, FlightLogError::kOutOfRange);
-  EXPECT_EQ(parseFlightLogRow(replaced(12, "1e+231")).error, FlightLogError::kOutOfRange);
+  EXPECT_EQ(parseFlightLogRow(replaced(12, "7")).error, FlightLogError::kOutOfRange);
+  EXPECT_EQ(parseFlightLogRow(replaced(12, "1e+231")).error, FlightLogError::kUninitialized);
+  EXPECT_EQ(parseFlightLogRow(replaced(4, "6.9e-310")).error, FlightLogError::kUninitialized);
+  EXPECT_EQ(parseFlightLogRow(replaced(8, "nan")).error, FlightLogError::kNone);
   EXPECT_EQ(parseFlightLogRow(replaced(14, "1e999")).error, FlightLogError::kOutOfRange);
   EXPECT_EQ(parseFlightLogRow(replaced(17, "1e999")).error, FlightLogError::kNone);
 }
