@@ -10,6 +10,7 @@
 #include "supervision/detect/oscillation_watch.h"
 #include "supervision/detect/parked_check.h"
 #include "supervision/detect/power_watch.h"
+#include "supervision/detect/reel_scale_watch.h"
 #include "supervision/detect/tether_watch.h"
 
 namespace tautline {
@@ -23,6 +24,7 @@ struct DetectConfig {
   LinkWatchConfig link;
   HostWatchConfig host;
   ParkedCheckConfig parked;
+  ReelScaleConfig reel_scale;
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -34,6 +36,7 @@ struct DetectConfig {
     v.section("link", link);
     v.section("host", host);
     v.section("parked", parked);
+    v.section("reel_scale", reel_scale);
   }
 };
 
