@@ -15,6 +15,7 @@ namespace tautline::experiments {
 namespace {
 
 constexpr double kTelemetryRate = 100.0;  // [Hz] what a Fotokite sends when asked
+constexpr std::array kPulls{0.5, 1.0};    // [N] by turns: what a user of contacts would set
 constexpr double kPromised = 1.0;         // [s] and alarms an hour
 constexpr Duration kLimit = std::chrono::seconds(150);
 
@@ -69,10 +70,12 @@ std::string trialName(const Clean& clean, int seed) {
 bench::LockstepConfig configOf(const Setup& setup, const char* scene, int seed) {
   StationConfig station = setup.tautline;
   station.fotokite.telemetry_rate_hz = kTelemetryRate;
-  return setup.flight(
+  bench::LockstepConfig config = setup.flight(
       station,
       sceneInWorld(readScene(setup.folder / "../scenes" / (std::string(scene) + ".scene.toml"))),
       static_cast<std::uint64_t>(seed));
+  pullWith(config, kPulls[static_cast<std::size_t>(seed) % kPulls.size()]);
+  return config;
 }
 
 std::unique_ptr<MissionPlan> planOf(const Setup& setup, const char* mission, bool contacts) {
@@ -268,8 +271,8 @@ const Experiment kContactWatching{
     "observer", "Contact observer",
     "Flights in which a contact comes off, slides, does not form or was not planned, and flights in "
     "which nothing happens. The delay counts from the event in the plant's truth to the condition "
-    "that counts in the station. Angles and length come 100 times a second, quantized as a Fotokite "
-    "does.",
+    "that counts in the station. Half of the flights pull with 0.5 N, half with 1 N; angles and length come "
+    "100 times a second, quantized as a Fotokite does.",
     trials, judge};
 
 }  // namespace tautline::experiments

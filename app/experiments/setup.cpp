@@ -13,6 +13,15 @@ std::string Setup::fingerprint() const {
   return hashText(fnv1a(text));
 }
 
+void pullWith(bench::LockstepConfig& flight, double tension) {
+  CoreConfig& core = flight.station.core;
+  flight.sim.vehicle.tension = tension;
+  core.localizer.nominal_tension_n = tension;
+  core.executor.target.nominal_tension_n = tension;
+  core.control.composite.feed_forward.nominal_tension_n = tension;
+  core.control.position.target.nominal_tension_n = tension;
+}
+
 Setup loadSetup(const std::filesystem::path& folder, bool quick, std::uint64_t seed) {
   Setup setup;
   setup.folder = folder;

@@ -34,6 +34,10 @@ struct Setup {
   }
 };
 
+/// Lets vehicle and station of a flight use another pull on the tether [N] than the set-up's, as a
+/// user would who has set the vehicle so.
+void pullWith(bench::LockstepConfig& flight, double tension);
+
 /// Throws InputError.
 [[nodiscard]] Setup loadSetup(const std::filesystem::path& folder, bool quick, std::uint64_t seed);
 
