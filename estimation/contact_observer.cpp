@@ -26,8 +26,8 @@ bool isFinite(const ContactObserverInput& in) noexcept {
 Eigen::Vector3d acceleration(const ContactObserverInput& in, const Eigen::Vector3d& d) noexcept {
   const Eigen::Vector3d n = in.R_WB * Eigen::Vector3d::UnitY();
   const double carried = in.G + in.T * d.y();
-  const Eigen::Vector3d force = carried / std::max(kLeastUpright, n.y()) * n - in.T * d -
-                                in.G * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d force =
+      carried / std::max(kLeastUpright, n.y()) * n - in.T * d - in.G * Eigen::Vector3d::UnitY();
   return force * (kGravity / in.G);
 }
 
@@ -57,9 +57,9 @@ ContactObserver::ContactObserver(const ContactObserverConfig& config) noexcept
       a_(2.0 * std::numbers::pi * config.forget_rate_hz),
       // Of a cumulated log likelihood ratio that says e^h the odds are e^-h in each of its
       // independent samples.
-      threshold_(std::max(
-          1.0, std::log(3600.0 * kHypotheses /
-                        (config.correlation_time_s * config.false_alarms_per_hour)))) {}
+      threshold_(
+          std::max(1.0, std::log(3600.0 * kHypotheses /
+                                 (config.correlation_time_s * config.false_alarms_per_hour)))) {}
 
 const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInput& in) noexcept {
   const double dt = last_ && now > *last_ ? toSeconds(now - *last_) : 0.0;
@@ -98,8 +98,8 @@ const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInp
   f_.update(dt, lambda_, a_, acceleration(in, d));
 
   const Eigen::Vector3d across(std::cos(in.phi), 0.0, -std::sin(in.phi));
-  const Eigen::Vector3d difference = f_.value() - p_.acceleration(lambda_, a_) -
-                                     config_.drag_per_s * p_.rate(a_);
+  const Eigen::Vector3d difference =
+      f_.value() - p_.acceleration(lambda_, a_) - config_.drag_per_s * p_.rate(a_);
   const Eigen::Vector3d turning = d_.acceleration(lambda_, a_) + config_.drag_per_s * d_.rate(a_);
   const double raw = across.dot(difference);
   bias_ += -std::expm1(-dt / config_.bias_time_s) * (raw - bias_);

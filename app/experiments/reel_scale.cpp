@@ -11,14 +11,14 @@
 namespace tautline::experiments {
 namespace {
 
-constexpr double kWrong = 1.42;                       // 4.06 mm a count read as 2.85
-constexpr std::array kScales{kWrong, 1.0 / kWrong};   // true metres per nominal metre
+constexpr double kWrong = 1.42;                      // 4.06 mm a count read as 2.85
+constexpr std::array kScales{kWrong, 1.0 / kWrong};  // true metres per nominal metre
 constexpr std::array kPulls{0.5, 1.0};               // [N] by turns
-constexpr double kFound = 0.02;                       // relative error
-constexpr double kJudged = 60.0;                      // after take-off [s]
+constexpr double kFound = 0.02;                      // relative error
+constexpr double kJudged = 60.0;                     // after take-off [s]
 constexpr Duration kLimit = std::chrono::seconds(90);
-constexpr double kNeverCalibrated = 0.5;              // prior sigma of the scale
-constexpr double kAnyParkedLength = 2.0;              // [m] an uncalibrated reel cannot be checked
+constexpr double kNeverCalibrated = 0.5;  // prior sigma of the scale
+constexpr double kAnyParkedLength = 2.0;  // [m] an uncalibrated reel cannot be checked
 
 /// What the station knows besides its sensors.
 struct Knowledge {
@@ -49,7 +49,10 @@ nlohmann::json fly(const Setup& setup, const Knowledge& knowledge, double scale,
   pullWith(config, kPulls[static_cast<std::size_t>(seed) % kPulls.size()]);
   config.sim.reel.scale = scale;
   config.sim.start_slack = knowledge.slack;
-  const Mission mission = readMission(setup.folder / "../missions/square.mission.toml");
+  Mission mission = readMission(setup.folder / "../missions/square.mission.toml");
+  // It stays up longer than it is watched.
+  mission.plan->waypoints[static_cast<std::size_t>(mission.plan->waypoint_count - 1)].hold =
+      kJudged;
   bench::Lockstep bench(config, nullptr);
   std::optional<Time> took_off;
   double error = 1.0;
@@ -136,7 +139,8 @@ Findings judge(const Setup& setup, const Results& results) {
 const Experiment kReelScale{
     "reel_scale", "Reel scale",
     "A reel whose scale is off by 42 %, either way, on a station that is told that it never was "
-    "calibrated; a flight of the level rectangle, half of them with 0.5 N and half with 1 N. What the parked length tells, what is left when "
+    "calibrated; a flight of the level rectangle, half of them with 0.5 N and half with 1 N. What "
+    "the parked length tells, what is left when "
     "the parked tether lies slack, and what the sensors in flight tell alone.",
     trials, judge};
 

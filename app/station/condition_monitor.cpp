@@ -169,13 +169,16 @@ void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
   oscillation_.update(in.now, sensed, findings_);
 }
 
-/// What the tether turns about.
+/// What the tether turns about. On a way back it is not asked: contacts, known or not, come off
+/// there when they will, and the way back is the remedy.
 void ConditionMonitor::watchContact(const MonitorInput& in) noexcept {
   const SensorFrame& f = *in.sensors;
   const Estimate& e = *in.estimate;
   const SensorHealth& health = *in.health;
   ContactObserverInput o;
-  o.flying = isFlying(f) && e.usable() && health[SensorStream::kReel].ok() &&
+  constexpr ModeMask kWayBack =
+      maskOf({Mode::kBackUp, Mode::kReturn, Mode::kLand, Mode::kDescend});
+  o.flying = isFlying(f) && !isIn(in.mode, kWayBack) && e.usable() && health[SensorStream::kReel].ok() &&
              health[SensorStream::kAngles].ok() && health[SensorStream::kAttitude].ok();
   o.L_total = L_total_ * e.reel_scale;
   o.theta = f.angles.value.theta - e.elevation_bias;

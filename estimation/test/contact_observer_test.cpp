@@ -62,9 +62,8 @@ class Swing {
     gust_ += -kCycle / 1.5 * gust_ + 0.03 * std::sqrt(2.0 * kCycle / 1.5) * normal();
     Vector3d sideways(std::cos(phi_), 0.0, -std::sin(phi_));
     const Vector3d force = kMass * (a + kDrag * v + gust_ * sideways) + kPull * direction() +
-                           kMass * kGravity * Vector3d::UnitY() ;
-    const Vector3d tilted =
-        force.normalized() + 0.005 * Vector3d(normal(), 0.0, normal());
+                           kMass * kGravity * Vector3d::UnitY();
+    const Vector3d tilted = force.normalized() + 0.005 * Vector3d(normal(), 0.0, normal());
     ContactObserverInput in;
     in.flying = true;
     in.L_total = L_total;

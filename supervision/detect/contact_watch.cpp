@@ -21,23 +21,18 @@ void ContactWatch::update(Time now, const ContactWatchInput& in, Findings& out) 
   last_ = now;
   if (!in.flying || !in.usable) {
     clear_of_map_ = innovations_small_ = now;
-    height_residual_ = slip_ = 0.0;
+    height_residual_ = 0.0;
     return;
   }
   const double through = throughObstacles(in.p_WA, in.p_WD);
   if (through < config_.through_obstacle_m) clear_of_map_ = now;
   if (in.nis < config_.nis) innovations_small_ = now;
   if (in.height_residual) {
-    const auto follow = [&](double& mean, double time) {
-      mean += -std::expm1(-dt / time) * (*in.height_residual - mean);
-    };
-    follow(height_residual_, config_.height_time_s);
-    follow(slip_, config_.slip_time_s);
+    height_residual_ +=
+        (1.0 - std::exp(-dt / config_.height_time_s)) * (*in.height_residual - height_residual_);
   } else {
-    height_residual_ = slip_ = 0.0;
+    height_residual_ = 0.0;
   }
-  const double slip = in.contacts > 0 ? std::abs(slip_) : 0.0;
-  out.reportAbove(Condition::kContactSlipped, slip, config_.slip_height_m);
   const auto lasts = [&](Time since, double seconds) { return toSeconds(now - since) > seconds; };
   const double height = std::abs(height_residual_) / config_.height_residual_m;
   const bool is = lasts(clear_of_map_, config_.through_time_s) ||

@@ -70,9 +70,8 @@ const ConditionSet kHoldsBack{
     C::kAnglesStuck,    C::kAnglesJump,       C::kTetherSlack,      C::kOscillation,
     C::kOverruns,       C::kClockJump,        C::kLocalizationLost, C::kTetherSnagged,
     C::kOverTension,    C::kUnplannedContact, C::kContactLost,      C::kContactNotFormed,
-    C::kFenceLength,      C::kFenceAltitude,
-    C::kFenceElevation, C::kFenceKeepOut,     C::kFenceClearance,   C::kOperatorLost,
-    C::kNoOperator,     C::kMissionFailed};
+    C::kFenceLength,    C::kFenceAltitude,    C::kFenceElevation,   C::kFenceKeepOut,
+    C::kFenceClearance, C::kOperatorLost,     C::kNoOperator,       C::kMissionFailed};
 
 struct Case {
   Mode from;
