@@ -49,6 +49,8 @@ void Localizer::reset(const Eigen::Vector3d& p_WD0, Time now) noexcept {
   fix_.p_WD = p;
   fix_failed_ = false;
   on_ground_ = true;
+  at_home_ = true;
+  parked_length_.reset();
   ready_ = true;
   nis_ = 1.0;
   last_update_ = now;
@@ -87,6 +89,9 @@ void Localizer::updateGroundContact(Time now, const SensorFrame& frame,
   const bool silent_but_steered = phase == VehiclePhase::kUnknown && command.engaged;
   if (on_ground_ && (says_flying || silent_but_steered)) {
     on_ground_ = false;
+    if (parked_length_) static_cast<void>(filter_.updateParkedLength(*parked_length_, anchor_));
+    at_home_ = false;
+    parked_length_.reset();
     filter_.restart(filter_.p(), config_.prior.takeoff_position_sigma_m,
                     config_.prior.takeoff_velocity_sigma_mps);
     for (Stream* stream : {&reel_, &angles_}) {
@@ -126,6 +131,8 @@ void Localizer::useSamples(Time now, const SensorFrame& frame) noexcept {
       take(angles_, SensorStream::kAngles, now, frame.angles, isPlausible(frame.angles.value));
   const auto attitude = take(attitude_, SensorStream::kAttitude, now, frame.attitude,
                              isPlausible(frame.attitude.value));
+  const bool parked = frame.vehicle.valid && frame.vehicle.value.phase == VehiclePhase::kIdle;
+  if (reel && at_home_ && parked) parked_length_ = frame.reel.value.length;
   if (on_ground_ || fix_variant_)
     return;  // taken, so that they are not mistaken for new ones later
 

@@ -87,6 +87,8 @@ class Localizer {
   std::optional<Time> last_update_;
   bool ready_{false};  // reset() was called
   bool on_ground_{true};
+  bool at_home_{false};                  // since reset()
+  std::optional<double> parked_length_;  // last reading there
   double nis_{1.0};  // low-passed, per degree of freedom
   Estimate fix_;     // last memoryless fix
   bool fix_failed_{false};

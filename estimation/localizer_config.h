@@ -53,7 +53,8 @@ struct LocalizerPriorConfig {
   double takeoff_position_sigma_m{0.5};  ///< When the vehicle first says that it flies.
   double takeoff_velocity_sigma_mps{0.5};
   double reel_scale_sigma{
-      0.03};  ///< Calibrated with two marks; uncalibrated reels are off by 40 %.
+      0.03};  ///< Calibrated with two marks; 0.5 for a reel that never was: those are off by 40 %.
+  double parked_slack_sigma_m{0.05};  ///< Tether beyond the straight line to the parked drone.
   double azimuth_zero_sigma_rad{0.02};
   double elevation_bias_sigma_rad{0.015};
   double altitude_offset_sigma_m{0.3};
@@ -67,7 +68,9 @@ struct LocalizerPriorConfig {
     v.field("takeoff_velocity_sigma_mps", takeoff_velocity_sigma_mps, Range{0.001, 10},
             "velocity then");
     v.field("reel_scale_sigma", reel_scale_sigma, Range{0, 1},
-            "relative error of the reel's calibration");
+            "relative error of the reel's calibration; 0.5: never calibrated");
+    v.field("parked_slack_sigma_m", parked_slack_sigma_m, Range{0.001, 10},
+            "tether beyond the straight line to the parked drone");
     v.field("azimuth_zero_sigma_rad", azimuth_zero_sigma_rad, Range{0, 1},
             "error of the azimuth's zero");
     v.field("elevation_bias_sigma_rad", elevation_bias_sigma_rad, Range{0, 1},

@@ -18,6 +18,7 @@ constexpr double kLogTMax = 4.6;    // ln 100 N
 constexpr double kScaleMin = 0.5;
 constexpr double kScaleMax = 2.0;
 constexpr int kTensionIterations = 3;  // lean and reel tension are strongly curved in ln T
+constexpr int kScaleIterations = 6;    // so is a length in a scale that may be off by 40 %
 
 // Position, cross and velocity variance that one axis gains over dt: the integral of a velocity
 // that follows its command with lag tau and departs from it with standard deviation sigma, eq.
@@ -259,6 +260,17 @@ void TetherFilter::clamp(const Anchor& anchor) noexcept {
 
 Innovation TetherFilter::updateLength(double L_total, double age, double weight,
                                       const Anchor& anchor) noexcept {
+  const double sigma = config_.noise.length_sigma_m;
+  return updateLength(L_total, weight * sigma * sigma, age, anchor, 1);
+}
+
+Innovation TetherFilter::updateParkedLength(double L_total, const Anchor& anchor) noexcept {
+  const double sigma = std::hypot(config_.noise.length_sigma_m, config_.prior.parked_slack_sigma_m);
+  return updateLength(L_total, sigma * sigma, 0.0, anchor, kScaleIterations);
+}
+
+Innovation TetherFilter::updateLength(double L_total, double variance, double age,
+                                      const Anchor& anchor, int iterations) noexcept {
   const auto model = [&](const State& x, const Eigen::Vector3d& p_then) {  // (17)
     const TetherSegment segment =
         segmentTo(p_then - anchor.p_WA, std::exp(x(kLogT)), config_.tether_weight_n_per_m);
@@ -271,9 +283,8 @@ Innovation TetherFilter::updateLength(double L_total, double age, double weight,
     out.H(kScale) = -predicted / s;
     return out;
   };
-  const double sigma = config_.noise.length_sigma_m;
   const Innovation out =
-      update<1>(model, Eigen::Matrix<double, 1, 1>(weight * sigma * sigma), age, anchor, 1);
+      update<1>(model, Eigen::Matrix<double, 1, 1>(variance), age, anchor, iterations);
   clamp(anchor);
   return out;
 }

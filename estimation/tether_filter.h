@@ -76,6 +76,9 @@ class TetherFilter {
   /// Updates of readings that are `age` [s] old, eqs. (17)-(22). `weight` >= 1 multiplies the noise
   /// variance (see LocalizerNoiseConfig).
   Innovation updateLength(double L_total, double age, double weight, const Anchor& anchor) noexcept;
+  /// Eq. (17) with the drone parked where reset() has put it and the tether perhaps a little slack:
+  /// what tells the scale of an uncalibrated reel. Once a flight: its error does not average out.
+  Innovation updateParkedLength(double L_total, const Anchor& anchor) noexcept;
   Innovation updateAngles(double theta, double phi, double age, double weight,
                           const Anchor& anchor) noexcept;
   Innovation updateAltitude(double altitude, double age, double weight,
@@ -100,6 +103,8 @@ class TetherFilter {
   template <int M, class Model>
   Innovation update(const Model& model, const Eigen::Matrix<double, M, M>& R, double age,
                     const Anchor& anchor, int iterations) noexcept;
+  Innovation updateLength(double L_total, double variance, double age, const Anchor& anchor,
+                          int iterations) noexcept;
   void clamp(const Anchor& anchor) noexcept;
 
   LocalizerConfig config_;

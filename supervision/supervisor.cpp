@@ -17,8 +17,9 @@ constexpr ConditionSet kMustLand{C::kLinkLost, C::kVehicleStale, C::kVehicleFaul
 /// Out of a fence; the way back is the way out of it.
 constexpr ConditionSet kOutside{C::kFenceLength, C::kFenceAltitude, C::kFenceElevation,
                                 C::kFenceKeepOut, C::kFenceClearance};
-/// Something holds the tether: moving on makes it worse.
-constexpr ConditionSet kCaught{C::kTetherSnagged, C::kUnplannedContact, C::kOverTension};
+/// Something holds the tether, or does not where it should: moving on makes it worse.
+constexpr ConditionSet kCaught{C::kTetherSnagged, C::kUnplannedContact, C::kContactLost,
+                               C::kContactNotFormed, C::kOverTension};
 /// The flight is not under control.
 constexpr ConditionSet kUnsteady{C::kTetherSlack, C::kOscillation, C::kOverruns, C::kClockJump};
 /// The way home is called for, and can wait until it is safe.

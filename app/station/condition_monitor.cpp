@@ -43,12 +43,14 @@ ConditionMonitor::ConditionMonitor(const CoreConfig& config)
             config.localizer.vehicle_weight_n),
       tether_(config.detect.tether),
       contact_(config.detect.contact, config.fence.obstacles),
+      observer_(config.contact_observer),
       oscillation_(config.detect.oscillation),
       fence_(config.fence),
       power_(config.detect.power),
       link_(config.detect.link),
       host_(config.detect.host),
       parked_(config.detect.parked, config.guidance.home_position_m),
+      reel_scale_(config.detect.reel_scale),
       config_bad_(isUnflyable(config)) {}
 
 ConditionSet ConditionMonitor::update(const MonitorInput& in) noexcept {
@@ -58,6 +60,7 @@ ConditionSet ConditionMonitor::update(const MonitorInput& in) noexcept {
   watchSensors(in);
   watchTether(in);
   watchSpace(in);
+  watchContact(in);
   watchVehicle(in);
   const LinkStatus& link = in.sensors->link;
   link_.update(in.now, link.lines_ok, link.lines_bad + link.check_errors, findings_);
@@ -114,6 +117,7 @@ void ConditionMonitor::watchTether(const MonitorInput& in) noexcept {
   const Estimate& e = *in.estimate;
   const StreamHealth& reel = (*in.health)[SensorStream::kReel];
   findings_.report(C::kLocalizationLost, !e.usable(), e.nis, config_.localizer.health.lost_nis);
+  reel_scale_.update(isFlying(f) && e.usable(), e.reel_scale, e.sigma_reel_scale, findings_);
   lean_.update(f.attitude, e.theta_tangent, e.phi);
   TetherWatchInput t;
   t.flying = isFlying(f) && e.usable();
@@ -144,6 +148,7 @@ void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
   ContactWatchInput c;
   c.flying = flying;
   c.usable = e.usable();
+  c.contacts = in.anchor->contact_count;
   c.p_WA = in.anchor->p_WA;
   c.p_WD = e.p_WD;
   c.nis = e.nis;
@@ -162,6 +167,34 @@ void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
     sensed = in.anchor->p_WA + toCartesian({e.L_free, angles.theta, angles.phi});
   }
   oscillation_.update(in.now, sensed, findings_);
+}
+
+/// What the tether turns about. On a way back it is not asked: contacts, known or not, come off
+/// there when they will, and the way back is the remedy.
+void ConditionMonitor::watchContact(const MonitorInput& in) noexcept {
+  const SensorFrame& f = *in.sensors;
+  const Estimate& e = *in.estimate;
+  const SensorHealth& health = *in.health;
+  ContactObserverInput o;
+  constexpr ModeMask kWayBack =
+      maskOf({Mode::kBackUp, Mode::kReturn, Mode::kLand, Mode::kDescend});
+  o.flying = isFlying(f) && !isIn(in.mode, kWayBack) && e.usable() && health[SensorStream::kReel].ok() &&
+             health[SensorStream::kAngles].ok() && health[SensorStream::kAttitude].ok();
+  o.L_total = L_total_ * e.reel_scale;
+  o.theta = f.angles.value.theta - e.elevation_bias;
+  o.phi = f.angles.value.phi - e.azimuth_zero;
+  o.R_WB = f.attitude.value.R_WB;
+  o.T = e.T;
+  o.G = config_.localizer.vehicle_weight_n;
+  o.anchor = *in.anchor;
+  const ContactVerdict& verdict = observer_.update(in.now, o);
+  const auto report = [&](C c, TetherHypothesis hypothesis) {
+    findings_.report(c, verdict.hypothesis == hypothesis, verdict.evidence, 1.0);
+  };
+  report(C::kContactLost, TetherHypothesis::kLost);
+  report(C::kContactNotFormed, TetherHypothesis::kNotFormed);
+  if (verdict.hypothesis == TetherHypothesis::kUnplanned)
+    findings_.report(C::kUnplannedContact, true, verdict.evidence, 1.0);
 }
 
 void ConditionMonitor::watchVehicle(const MonitorInput& in) noexcept {

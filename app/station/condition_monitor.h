@@ -6,6 +6,7 @@
 
 #include "common/estimate.h"
 #include "common/vehicle.h"
+#include "estimation/contact_observer.h"
 #include "estimation/lean_tension.h"
 #include "estimation/sensor_health.h"
 #include "supervision/condition_filter.h"
@@ -46,6 +47,7 @@ class ConditionMonitor {
   void watchSensors(const MonitorInput& in) noexcept;
   void watchTether(const MonitorInput& in) noexcept;
   void watchSpace(const MonitorInput& in) noexcept;
+  void watchContact(const MonitorInput& in) noexcept;
   void watchVehicle(const MonitorInput& in) noexcept;
 
   const CoreConfig& config_;
@@ -53,12 +55,14 @@ class ConditionMonitor {
   LeanTension lean_;
   TetherWatch tether_;
   ContactWatch contact_;
+  ContactObserver observer_;
   OscillationWatch oscillation_;
   Fence fence_;
   PowerWatch power_;
   LinkWatch link_;
   HostWatch host_;
   ParkedCheck parked_;
+  ReelScaleWatch reel_scale_;
   bool config_bad_;
   std::optional<Time> first_;                      ///< Cycle.
   double L_total_{0.0};                            ///< Last good reading [m].

@@ -239,7 +239,8 @@ bool Guidance::goingBack() const noexcept {
 /// Where it is flown to is remembered, and forgotten as it is flown back. A take-off is one
 /// straight piece up to where the way home ends.
 void Guidance::recordFlight(const GuidanceInput& in) noexcept {
-  constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kTetherSnagged,
+  constexpr ConditionSet kTetherUnknown{Condition::kUnplannedContact, Condition::kContactLost,
+                                        Condition::kContactNotFormed, Condition::kTetherSnagged,
                                         Condition::kTetherBroken};
   const bool blind = !in.estimate.usable() || in.conditions.any(kStandStill);
   if (blind || isIn(in.mode, maskOf({Mode::kTakeoff, Mode::kDescend}))) return;

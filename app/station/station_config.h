@@ -24,6 +24,7 @@
 #include "drivers/fotokite_device.h"
 #include "drivers/serial_port.h"
 #include "drivers/tautline_device.h"
+#include "estimation/contact_observer.h"
 #include "estimation/localizer.h"
 #include "supervision/authority_config.h"
 #include "supervision/detect/detect_config.h"
@@ -73,6 +74,7 @@ struct GuidanceConfig {
 struct CoreConfig {
   GuidanceConfig guidance;
   LocalizerConfig localizer;
+  ContactObserverConfig contact_observer;
   DetectConfig detect;
   FenceConfig fence;
   SupervisorConfig supervisor;
@@ -88,6 +90,7 @@ struct CoreConfig {
   void fields(Visitor& v) {
     v.section("guidance", guidance);
     v.section("localizer", localizer);
+    v.section("contact_observer", contact_observer);
     v.section("detect", detect);
     v.section("fence", fence);
     v.section("supervisor", supervisor);

@@ -10,6 +10,7 @@
 #include "supervision/detect/oscillation_watch.h"
 #include "supervision/detect/parked_check.h"
 #include "supervision/detect/power_watch.h"
+#include "supervision/detect/reel_scale_watch.h"
 #include "supervision/detect/tether_watch.h"
 
 namespace tautline {
@@ -23,6 +24,7 @@ struct DetectConfig {
   LinkWatchConfig link;
   HostWatchConfig host;
   ParkedCheckConfig parked;
+  ReelScaleConfig reel_scale;
   bool vehicle_signs{true};  ///< Heed what the vehicle says of itself; false only on a bench.
 
   template <class Visitor>
@@ -35,6 +37,7 @@ struct DetectConfig {
     v.section("link", link);
     v.section("host", host);
     v.section("parked", parked);
+    v.section("reel_scale", reel_scale);
     v.field("vehicle_signs", vehicle_signs,
             "heed the vehicle's own flags and flight modes; false, as published: only on a bench");
   }

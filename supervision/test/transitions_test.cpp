@@ -53,6 +53,7 @@ const std::vector<Demand> kDemands{
     {C::kAnglesJump, M::kFailsafe},    {C::kLocalizationLost, M::kFailsafe},
     {C::kTetherSlack, M::kFailsafe},   {C::kOverTension, M::kFailsafe},
     {C::kTetherSnagged, M::kFailsafe}, {C::kUnplannedContact, M::kFailsafe},
+    {C::kContactLost, M::kFailsafe},   {C::kContactNotFormed, M::kFailsafe},
     {C::kOscillation, M::kFailsafe},   {C::kOverruns, M::kFailsafe},
     {C::kClockJump, M::kFailsafe},
 };
@@ -68,9 +69,9 @@ const ConditionSet kHoldsBack{
     C::kReelStale,      C::kReelStuck,        C::kReelJump,         C::kAnglesStale,
     C::kAnglesStuck,    C::kAnglesJump,       C::kTetherSlack,      C::kOscillation,
     C::kOverruns,       C::kClockJump,        C::kLocalizationLost, C::kTetherSnagged,
-    C::kOverTension,    C::kUnplannedContact, C::kFenceLength,      C::kFenceAltitude,
-    C::kFenceElevation, C::kFenceKeepOut,     C::kFenceClearance,   C::kOperatorLost,
-    C::kNoOperator,     C::kMissionFailed};
+    C::kOverTension,    C::kUnplannedContact, C::kContactLost,      C::kContactNotFormed,
+    C::kFenceLength,    C::kFenceAltitude,    C::kFenceElevation,   C::kFenceKeepOut,
+    C::kFenceClearance, C::kOperatorLost,     C::kNoOperator,       C::kMissionFailed};
 
 struct Case {
   Mode from;
