@@ -36,7 +36,9 @@ struct Row {
   std::optional<double> tautline{};      ///< Simulated.
   std::optional<Band> as_published_band{};
   std::optional<Band> tautline_band{};
-  std::string note{};  ///< One sentence, e.g. what limits it; may be empty.
+  std::string note{};       ///< One sentence; may be empty.
+  std::string shortfall{};  ///< What limits a goal that is known not to be met: the row does not
+                            ///< pass, and does not fail the run. Empty: none is known.
 
   /// Every band is met; a band without its figure is not.
   [[nodiscard]] bool pass() const noexcept {

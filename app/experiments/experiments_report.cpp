@@ -54,19 +54,24 @@ const std::vector<std::string> kColumns{
     "<figure", "published", "as published, simulated", "Tautline, simulated", "<band",
     "<pass",   "<note"};
 
+std::string passText(const Row& row) {
+  return row.pass() ? "yes" : row.shortfall.empty() ? "no" : "falls short";
+}
+
 std::vector<std::string> cells(const Row& row) {
   return {figureText(row),
           show(row.published),
           show(row.as_published),
           show(row.tautline),
           bandText(row),
-          row.pass() ? "yes" : "no",
-          row.note};
+          passText(row),
+          row.note + (row.note.empty() || row.shortfall.empty() ? "" : "; ") + row.shortfall};
 }
 
 std::string countText(const std::vector<Chapter>& chapters) {
   const Tally t = tally(chapters);
-  return fmt::format("{} of {} rows pass", t.passed, t.rows);
+  return fmt::format("{} of {} rows pass, {} fall short of a goal for a known reason, {} fail",
+                     t.passed, t.rows(), t.short_of, t.failed);
 }
 
 std::string pageOf(const Setup& setup, const std::vector<Chapter>& chapters,
@@ -75,13 +80,13 @@ std::string pageOf(const Setup& setup, const std::vector<Chapter>& chapters,
   std::string body = "<h1>Experiments</h1>\n";
   body += fmt::format("<p class=\"about\">seed {} · {}</p>\n<div class=\"banner {}\">{}</div>\n",
                       setup.seed, setup.quick ? "quick sample" : "all trials",
-                      t.passed == t.rows ? "good" : "bad", countText(chapters));
+                      t.failed == 0 ? "good" : "bad", countText(chapters));
   for (std::size_t c = 0; c < chapters.size(); ++c) {
     const Experiment& e = *chapters[c].experiment;
     body += "<h2>" + escaped(e.title) + "</h2>\n<p>" + escaped(e.setup) + "</p>\n";
     report::HtmlTable table(kColumns);
     for (const Row& row : chapters[c].findings.rows)
-      table.add(cells(row), row.pass() ? "" : "error");
+      table.add(cells(row), row.pass() ? "" : row.shortfall.empty() ? "error" : "warning");
     body += table.html();
     for (const Sheet& sheet : chapters[c].findings.sheets) {
       if (sheet.caption.empty()) continue;
@@ -165,7 +170,8 @@ std::string reportJson(const std::vector<Chapter>& chapters) {
            {"band",
             {{"as_published", jsonOf(r.as_published_band)}, {"tautline", jsonOf(r.tautline_band)}}},
            {"pass", r.pass()},
-           {"note", r.note}});
+           {"note", r.note},
+           {"shortfall", r.shortfall}});
     }
   }
   return rows.dump(1) + "\n";
@@ -177,8 +183,11 @@ std::string reportText(const std::vector<Chapter>& chapters) {
     text += fmt::format("{}\n", chapter.experiment->title);
     for (const Row& r : chapter.findings.rows) {
       text += fmt::format("  {} {:<52} published {:>7}  as published {:>7}  Tautline {:>7}  {}\n",
-                          r.pass() ? " " : "✗", figureText(r), show(r.published),
-                          show(r.as_published), show(r.tautline), bandText(r));
+                          r.pass()              ? " "
+                          : r.shortfall.empty() ? "✗"
+                                                : "-",
+                          figureText(r), show(r.published), show(r.as_published), show(r.tautline),
+                          bandText(r));
     }
   }
   return text + countText(chapters) + "\n";

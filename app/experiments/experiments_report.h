@@ -13,7 +13,8 @@
 namespace tautline::experiments {
 
 /// One JSON array of rows {experiment, figure, unit, published, as_published, tautline, band, pass,
-/// note}; band = {as_published, tautline}, each [min, max] or null, a missing bound null.
+/// note, shortfall}; band = {as_published, tautline}, each [min, max] or null, a missing bound
+/// null.
 [[nodiscard]] std::string reportJson(const std::vector<Chapter>& chapters);
 
 /// The table of all rows for a terminal.

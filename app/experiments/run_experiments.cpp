@@ -49,8 +49,7 @@ Tally tally(const std::vector<Chapter>& chapters) {
   Tally t;
   for (const Chapter& chapter : chapters) {
     for (const Row& row : chapter.findings.rows) {
-      ++t.rows;
-      t.passed += row.pass() ? 1 : 0;
+      ++(row.pass() ? t.passed : row.shortfall.empty() ? t.failed : t.short_of);
     }
   }
   return t;

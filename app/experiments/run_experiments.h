@@ -24,10 +24,13 @@ struct RunOptions {
 /// Throws InputError (kFailed) for the first trial that could not be run.
 [[nodiscard]] std::vector<Chapter> runExperiments(const Setup& setup, const RunOptions& options);
 
-/// Rows of all chapters that pass, and all rows.
+/// Rows of all chapters.
 struct Tally {
   int passed{0};
-  int rows{0};
+  int short_of{0};  ///< Do not pass, and what limits them is known (Row::shortfall).
+  int failed{0};    ///< The other ones.
+
+  [[nodiscard]] int rows() const noexcept { return passed + short_of + failed; }
 };
 [[nodiscard]] Tally tally(const std::vector<Chapter>& chapters);
 

@@ -58,9 +58,14 @@ std::vector<Chapter> twoRows() {
 }
 
 TEST(Report, CountsWhatPasses) {
-  const Tally t = tally(twoRows());
-  EXPECT_EQ(t.rows, 2);
-  EXPECT_EQ(t.passed, 1);
+  std::vector<Chapter> chapters = twoRows();
+  EXPECT_EQ(tally(chapters).rows(), 2);
+  EXPECT_EQ(tally(chapters).passed, 1);
+  EXPECT_EQ(tally(chapters).failed, 1);
+  for (Row& r : chapters[0].findings.rows) r.shortfall = "air";
+  EXPECT_EQ(tally(chapters).passed, 1) << "a goal that is met after all";
+  EXPECT_EQ(tally(chapters).short_of, 1);
+  EXPECT_EQ(tally(chapters).failed, 0);
 }
 
 TEST(Report, JsonHasTheContractsKeys) {
