@@ -9,8 +9,8 @@ namespace tautline::experiments {
 /// planner and flown many times.
 extern const Experiment kStaircase;
 
-/// The published software as it flew there: all of the low-level motion suite, so with the corrected
-/// localizer, and position control.
+/// The published software as it flew there: all of the low-level motion suite, so with the
+/// corrected localizer, and position control.
 [[nodiscard]] StationConfig publishedDemonstration(const Setup& setup);
 
 }  // namespace tautline::experiments
