@@ -9,6 +9,7 @@ namespace {
 constexpr Duration kStartLimit = std::chrono::minutes(2);  // to arm and take off
 constexpr Duration kLimit = std::chrono::minutes(30);      // of the mission
 constexpr Duration kPatience = std::chrono::seconds(60);   // for the next waypoint
+constexpr Duration kHover = std::chrono::seconds(5);  // at the last waypoint, before it is judged
 constexpr Duration kSample = std::chrono::milliseconds(100);
 constexpr ConditionSet kLost{Condition::kLocalizationLost, Condition::kUnplannedContact};
 constexpr ConditionSet kNeverThere{Condition::kMissionFailed, Condition::kOscillation};
@@ -30,6 +31,7 @@ class Follower {
     facts_.completed = out.mission.state == MissionState::kCompleted;
     facts_.conditions = out.supervision.reasons | out.conditions;
     reasons_ = out.supervision.mode == Mode::kAuto ? ConditionSet{} : out.supervision.reasons;
+    if (facts_.completed) hover();
   }
 
   [[nodiscard]] FlightFacts facts() const { return facts_; }
@@ -37,10 +39,18 @@ class Follower {
   [[nodiscard]] int waypoint() const { return waypoint_; }
 
  private:
+  /// The last waypoint counts as reached from some way off; the flight is judged where it hovers.
+  void hover() {
+    for (const Time end = bench_.now() + kHover; bench_.now() < end && !bench_.truth().crashed;) {
+      bench_.step();
+      look();
+    }
+  }
   void look() {
     const sim::Truth& truth = bench_.truth();
     const ExecutorStatus& mission = bench_.output().mission;
-    if (mission.waypoint != waypoint_ || mission.state == MissionState::kHolding) {
+    if (mission.waypoint != waypoint_ || mission.state == MissionState::kHolding ||
+        mission.state == MissionState::kCompleted) {
       waypoint_ = mission.waypoint;
       progress_ = bench_.now();
     }

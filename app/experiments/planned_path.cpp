@@ -1,7 +1,10 @@
 #include "app/experiments/planned_path.h"
 
+#include <optional>
+
 #include <fmt/format.h>
 
+#include "common/error.h"
 #include "planning_offline/cli/mission_output.h"
 #include "planning_offline/cli/path_file.h"
 #include "planning_offline/cli/plan_output.h"
@@ -10,6 +13,10 @@
 namespace tautline::experiments {
 
 using namespace planning;
+
+namespace {
+constexpr double kSameReel = 1e-3;  // [m]
+}
 
 Prediction predict(const RiskModel& risk, const std::vector<Eigen::Vector3d>& points) {
   const RiskReport report = risk.evaluate(points);
@@ -30,6 +37,15 @@ Prediction predictMission(const RiskSpace& space, const std::string& file) {
   options.reel = space.space.map->reel;
   options.states_only = true;
   const GivenPath path = readPath(file, options);
+  const std::optional<Eigen::Vector3d>& reel = space.space.map->reel;
+  if (path.reel && reel && (*path.reel - *reel).norm() > kSameReel) {
+    throw InputError({.file = file,
+                      .key = "reel_position_m",
+                      .problem = fmt::format("is {}", pointText(*path.reel)),
+                      .allowed = fmt::format("{}, the reel of the map {}", pointText(*reel),
+                                             space.space.map->name),
+                      .remedy = "use the map that the mission was planned in, or --reel"});
+  }
   needFreeWay(path.points, space.space, file);
   return predict(*space.risk, path.points);
 }

@@ -76,7 +76,7 @@ expect 5 'nowhere' "${calibrate[@]}" --params nowhere.toml -o "$work/fitted.toml
 expect 2 'maps' "${calibrate[@]}" --maps 1 -o "$work/fitted.toml"
 expect 0 '"after"' "${calibrate[@]}" --maps 4 --goals 1 --flights 3 --json --out "$work/paths" -o "$work/fitted.toml"
 cp "$work/out" "$work/first"
-expect 0 'written: .*fitted' "${calibrate[@]}" --maps 4 --goals 1 --flights 3 --out "$work/paths" -o "$work/again.toml"
+expect 0 'written: .*again' "${calibrate[@]}" --maps 4 --goals 1 --flights 3 --out "$work/paths" -o "$work/again.toml"
 cmp -s "$work/fitted.toml" "$work/again.toml" || { failed=$((failed + 1)); echo "FAILED: calibrate is not the same twice"; }
 expect 0 'risk 0\.' "$bin/tautline-plan" plan --map "$map" --params "$work/fitted.toml" --planner directional --goal 3.8,2.6,1.4
 
