@@ -84,7 +84,7 @@ TEST(Report, JsonHasTheContractsKeys) {
 TEST(Report, WritesAllFilesWithTextQuoted) {
   const auto folder = std::filesystem::temp_directory_path() / "tautline_experiments_report";
   std::filesystem::remove_all(folder);
-  const Setup setup{
+  const experiments::Setup setup{
       .folder = {}, .quick = true, .seed = 7, .plant = {}, .as_published = {}, .tautline = {}};
   const auto page = writeReport(setup, twoRows(), folder);
   EXPECT_EQ(page.filename(), "report.html");
