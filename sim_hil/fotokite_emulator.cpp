@@ -14,8 +14,8 @@ using fotokite::GroundMode;
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 // Of a length change by Pos, PosL [counts/s]: out of the reel's dead zone in both directions.
 constexpr double kMoveRate = 110.0;
-constexpr double kMoveGain = 5.0;       // slows down before the target [1/s]
-constexpr double kMoveDone = 0.5;       // [counts]
+constexpr double kMoveGain = 5.0;  // slows down before the target [1/s]
+constexpr double kMoveDone = 0.5;  // [counts]
 constexpr Duration kSlackTime = std::chrono::milliseconds(300);
 constexpr Duration kStopShown = std::chrono::seconds(2);  // mode 49 after a normal stop
 constexpr double kBackupLow = 3.5;                        // [V]

@@ -78,6 +78,7 @@ TEST(Stations, OnlyOursActsOnWhatTheVehicleSays) {
           if (mode == Mode::kAuto && !injected) {
             injected = true;
             sim::Fault fault = sim::makeFault("flag:MOTOR_ERROR", "on");
+            fault.at = b.now();
             fault.lasting = std::chrono::seconds(3);
             bench.inject(fault);
           }
