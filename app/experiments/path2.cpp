@@ -54,16 +54,27 @@ Findings judge(const Setup& setup, const Results& results) {
        .tautline = worst,
        .as_published_band = Band{kFullSemicircle / 2.0, 1.25 * kFullSemicircle},
        .note = "a full semicircle is 2.12 m from the line; ours: largest of all flights"});
+  double longest = 0.0;
+  double our_longest = 0.0;
+  for (std::size_t k = 0; k < kIntervals.size(); ++k) {
+    longest = std::max(longest, velocity[k].at_axis);
+    our_longest = std::max(our_longest, ours[k].at_axis);
+  }
+  rows.push_back(
+      {.figure = "velocity law, longest stay at the pole",
+       .unit = "s",
+       .as_published = longest,
+       .tautline = our_longest,
+       .note = "within 0.35 m of the axis; the noise of the sensors sets it free in the end"});
   const double flown = total(velocity, &PathMeans::flights);
   const double crossings = total(ours, &PathMeans::flights);
-  rows.push_back({.figure = "velocity law, flights trapped at the pole",
-                  .unit = "%",
-                  .published = 100.0,
-                  .as_published = 100.0 * total(velocity, &PathMeans::trapped) / flown,
-                  .tautline = 100.0 * total(ours, &PathMeans::trapped) / crossings,
-                  .as_published_band = Band{100.0, 100.0},
-                  .tautline_band = Band{0.0, 0.0},
-                  .note = "trapped: longer than 30 s within 0.5 m of the axis"});
+  rows.push_back(
+      {.figure = "velocity law, flights trapped at the pole",
+       .unit = "%",
+       .published = 100.0,
+       .as_published = 100.0 * total(velocity, &PathMeans::trapped) / flown,
+       .as_published_band = Band{100.0, 100.0},
+       .note = "trapped: within 0.35 m of the axis for over 14 s, twice the way through"});
   rows.push_back({.figure = fmt::format("paths crossed, of {:g}", crossings),
                   .tautline = total(ours, &PathMeans::completed),
                   .tautline_band = Band{crossings, crossings}});

@@ -118,6 +118,9 @@ nlohmann::json flyPath(const Setup& setup, Primitive primitive, const std::strin
   station.core.control.law = lawOf(primitive);
   const Scene world = sceneInWorld(readScene(setup.folder / "../scenes/open.scene.toml"));
   const Mission mission = readMission(missionFile(setup, path, interval));
+  // Speed is the set-up's, as for every mission of the experiments.
+  for (int i = 0; i < mission.plan->waypoint_count; ++i)
+    mission.plan->waypoints[static_cast<std::size_t>(i)].speed = 0.0;
   const TrackedFlight flight =
       flyTracked(setup.flight(station, world, trial), *mission.plan, limit);
   const std::vector<Eigen::Vector3d> corners = pathCorners(setup, path);

@@ -37,7 +37,7 @@ struct PathFigures {
   double at_axis{0.0};  ///< Longest stay within kAxisReach of the axis through the reel [s].
   std::vector<Eigen::Vector3d> track;  ///< 0.1 m apart; empty where nobody draws it.
 };
-inline constexpr double kAxisReach = 0.5;  // [m]
+inline constexpr double kAxisReach = 0.35;  // [m]
 
 /// Flies `path` ("path1", "path2") with waypoints every `interval` [m] and measures; `limit` is of
 /// the whole flight. JSON of PathFigures.

@@ -40,6 +40,7 @@ PathTable pathTable(const PathPlan& plan, const Results& results) {
         m.bulge += share * f.bulge;
         m.worst = std::max(m.worst, f.mean);
         m.max = std::max(m.max, f.max);
+        m.at_axis = std::max(m.at_axis, f.at_axis);
         if (i == 0) m.track = f.track;
       }
     }
@@ -50,7 +51,8 @@ PathTable pathTable(const PathPlan& plan, const Results& results) {
 Sheet pathSheet(const PathTable& table) {
   Sheet sheet{"flights",
               {"law", "interval_m", "flights", "completed", "trapped", "cross_track_mean_m",
-               "cross_track_worst_flight_m", "cross_track_max_m", "turn_deg", "bulge_m"},
+               "cross_track_worst_flight_m", "cross_track_max_m", "turn_deg", "bulge_m",
+               "longest_at_axis_s"},
               {}};
   for (const Primitive primitive : kPrimitives) {
     for (const PathMeans& m : of(table, primitive)) {
@@ -58,7 +60,7 @@ Sheet pathSheet(const PathTable& table) {
       sheet.rows.push_back({nameOf(primitive), fmt::format("{:g}", m.interval),
                             fmt::format("{}", m.flights), fmt::format("{}", m.completed),
                             fmt::format("{}", m.trapped), number(m.mean), number(m.worst),
-                            number(m.max), number(m.turn), number(m.bulge)});
+                            number(m.max), number(m.turn), number(m.bulge), number(m.at_axis)});
     }
   }
   return sheet;

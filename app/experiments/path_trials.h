@@ -30,10 +30,11 @@ struct PathMeans {
   double max{0.0};         ///< Largest cross-track error of all [m].
   double turn{0.0};        ///< [deg]
   double bulge{0.0};       ///< [m]
+  double at_axis{0.0};     ///< Longest stay at the axis of all [s].
   std::size_t trapped{0};  ///< Flights that stayed at the axis for longer than kTrapped.
   std::vector<Eigen::Vector3d> track;  ///< Of the first trial.
 };
-inline constexpr double kTrapped = 30.0;  ///< At 0.1 m/s the way through takes 10 s [s].
+inline constexpr double kTrapped = 14.0;  ///< Twice the way through at 0.1 m/s [s].
 
 /// By Primitive, then by interval.
 using PathTable = std::array<std::array<PathMeans, kIntervals.size()>, kPrimitives.size()>;

@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(TAUTLINE_SOURCE_DIR) / "config";
 
-Setup shipped() { return loadSetup(kConfig / "experiments", true, 1); }
+experiments::Setup shipped() { return loadSetup(kConfig / "experiments", true, 1); }
 
 /// Regular polygon of n corners on a circle, from angle 0 to `angle`.
 std::vector<Eigen::Vector3d> arc(int n, double radius, double angle) {
@@ -50,7 +50,7 @@ TEST(Track, ResamplingLeavesWobbleOut) {
 }
 
 TEST(PathFlight, IsTheSameForTheSameSeed) {
-  const Setup setup = shipped();
+  const experiments::Setup setup = shipped();
   const auto fly = [&](std::uint64_t trial) {
     return flyPath(setup, Primitive::kTautline, "path1", 3.0, trial, std::chrono::seconds(200),
                    true);
@@ -64,7 +64,7 @@ TEST(PathFlight, IsTheSameForTheSameSeed) {
 
 /// The published program had no supervisor; ours has.
 TEST(Stations, OnlyOursActsOnWhatTheVehicleSays) {
-  const Setup setup = shipped();
+  const experiments::Setup setup = shipped();
   const Scene world = sceneInWorld(readScene(kConfig / "scenes/open.scene.toml"));
   for (const bool ours : {false, true}) {
     bench::Lockstep bench(setup.flight(ours ? setup.tautline : setup.as_published, world, 0),
@@ -78,6 +78,7 @@ TEST(Stations, OnlyOursActsOnWhatTheVehicleSays) {
           if (mode == Mode::kAuto && !injected) {
             injected = true;
             sim::Fault fault = sim::makeFault("flag:MOTOR_ERROR", "on");
+            fault.at = b.now();
             fault.lasting = std::chrono::seconds(3);
             bench.inject(fault);
           }
