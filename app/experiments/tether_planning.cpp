@@ -155,7 +155,7 @@ json fly(const Setup& setup, const Side& side, const Set& set, int trial) {
   json result = {{"completed", flight.result.completed},
                  {"landed", flight.result.landed},
                  {"crash", nameOf(flight.result.crash, sim::kCrashReasonNames)},
-                 {"ended", nameOf(flight.last_mode, kModeNames) + (" " + flight.reasons)},
+                 {"ended", nameOf(flight.last_mode, kModeNames)},
                  {"error", all.value()},
                  {"contact_off", contact_off.value()},
                  {"by_contacts", json::array()}};
