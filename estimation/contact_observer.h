@@ -7,9 +7,9 @@
 /// Length and angles are the same whatever the drone turns about: behind a contact that nobody
 /// knows they are as consistent as before. What differs is how far the drone moves when its angles
 /// turn, and that is felt: the lean sideways accelerates the drone, and what it accelerates by,
-/// divided by how much faster the azimuth turns, is the lever. Hypotheses about the lever are judged
-/// by the likelihood ratio of what the lean and the turning of the tether say about the sideways
-/// velocity.
+/// divided by how much faster the azimuth turns, is the lever. Hypotheses about the lever are
+/// judged by the likelihood ratio of what the lean and the turning of the tether say about the
+/// sideways velocity.
 
 #include <array>
 #include <cstdint>
@@ -56,24 +56,32 @@ struct ContactObserverConfig {
   void fields(Visitor& v) {
     v.field("smoothing_rate_hz", smoothing_rate_hz, Range{0.1, 50},
             "bandwidth in which lean and turning are compared ...");
-    v.field("forget_rate_hz", forget_rate_hz, Range{0.01, 10}, "... and how soon velocity is forgotten");
-    v.field("drag_per_s", drag_per_s, Range{0, 10}, "deceleration by drag, of vehicle and tether, over the velocity");
-    v.field("bias_time_s", bias_time_s, Range{0.5, 600}, "lean and wind that last longer are not motion");
-    v.field("sigma_mps", sigma_mps, Range{0.001, 10}, "of the sideways velocity: wind, waves of the tether, noise ...");
+    v.field("forget_rate_hz", forget_rate_hz, Range{0.01, 10},
+            "... and how soon velocity is forgotten");
+    v.field("drag_per_s", drag_per_s, Range{0, 10},
+            "deceleration by drag, of vehicle and tether, over the velocity");
+    v.field("bias_time_s", bias_time_s, Range{0.5, 600},
+            "lean and wind that last longer are not motion");
+    v.field("sigma_mps", sigma_mps, Range{0.001, 10},
+            "of the sideways velocity: wind, waves of the tether, noise ...");
     v.field("lever_sigma", lever_sigma, Range{0, 1}, "... and of the lever, relative");
-    v.field("correlation_time_s", correlation_time_s, Range{0.01, 10}, "persistence of these errors");
-    v.field("false_alarms_per_hour", false_alarms_per_hour, Range{1e-6, 1000}, "of each hypothesis, on which the threshold is set");
+    v.field("correlation_time_s", correlation_time_s, Range{0.01, 10},
+            "persistence of these errors");
+    v.field("false_alarms_per_hour", false_alarms_per_hour, Range{1e-6, 1000},
+            "of each hypothesis, on which the threshold is set");
     v.field("memory_s", memory_s, Range{0.5, 600}, "evidence decays with this time");
-    v.field("least_lever_m", least_lever_m, Range{0.05, 10}, "levers nearer to each other are not told apart");
+    v.field("least_lever_m", least_lever_m, Range{0.05, 10},
+            "levers nearer to each other are not told apart");
     v.field("settle_s", settle_s, Range{0, 60}, "after take-off before anything is judged");
-    v.field("relax_s", relax_s, Range{0, 60}, "a contact that was let go may hold on for this long");
+    v.field("relax_s", relax_s, Range{0, 60},
+            "a contact that was let go may hold on for this long");
     v.field("form_s", form_s, Range{0, 60}, "a planned contact may form this late");
   }
 };
 
 /// One cycle's readings, corrected for what is known of the sensors; the newest there are.
 struct ContactObserverInput {
-  bool flying{false};  ///< In the air, with sensors and an estimate that may be used.
+  bool flying{false};   ///< In the air, with sensors and an estimate that may be used.
   double L_total{0.0};  ///< True metres, so times the reel scale [m].
   double theta{0.0};    ///< Tangent elevation at D [rad].
   double phi{0.0};      ///< [rad]

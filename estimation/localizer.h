@@ -89,8 +89,8 @@ class Localizer {
   bool on_ground_{true};
   bool at_home_{false};                  // since reset()
   std::optional<double> parked_length_;  // last reading there
-  double nis_{1.0};  // low-passed, per degree of freedom
-  Estimate fix_;     // last memoryless fix
+  double nis_{1.0};                      // low-passed, per degree of freedom
+  Estimate fix_;                         // last memoryless fix
   bool fix_failed_{false};
 };
 

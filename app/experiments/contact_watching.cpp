@@ -16,14 +16,13 @@ namespace {
 
 constexpr double kTelemetryRate = 100.0;  // [Hz] what a Fotokite sends when asked
 constexpr std::array kPulls{0.5, 1.0};    // [N] by turns: what a user of contacts would set
-constexpr double kSlip = 0.1;               // [m] a contact that moves less is within its sigma
+constexpr double kSlip = 0.1;             // [m] a contact that moves less is within its sigma
 constexpr double kPromised = 1.0;         // [s] and alarms an hour
 constexpr Duration kLimit = std::chrono::seconds(150);
 
 /// Conditions that say that the tether is not where the executor has it.
 constexpr ConditionSet kTells{Condition::kContactLost, Condition::kContactNotFormed,
-                              Condition::kUnplannedContact,
-                              Condition::kTetherSnagged};
+                              Condition::kUnplannedContact, Condition::kTetherSnagged};
 
 /// What is wrong, and when it begins in the plant's truth.
 struct Kind {
@@ -32,8 +31,8 @@ struct Kind {
   const char* mission;
   const char* fault;  ///< Of the tether; null: what is wrong is in mission or scene.
   double value;       ///< Of the fault, where it has one.
-  double at;            ///< Of the fault [s] after the tether has all contacts of the mission;
-                        ///< seeds spread it over the next 1.5 s.
+  double at;          ///< Of the fault [s] after the tether has all contacts of the mission;
+                      ///< seeds spread it over the next 1.5 s.
   bool contacts;      ///< The mission has them.
   bool obstacles;     ///< The scene has them.
   bool map_known;
@@ -248,12 +247,11 @@ void judgeKind(const Tally& t, const Kind& kind, Findings& findings) {
   if (summary) p95.tautline = summary->p95;
   if (t.happened == 0) p95.tautline_band.reset();  // nothing to tell
   findings.rows.push_back(p95);
-  findings.rows.push_back({.figure = "missed: " + which,
-                           .unit = "%",
-                           .tautline = t.happened > 0 ? std::optional(100.0 * t.missed / t.happened)
-                                                      : std::nullopt,
-                           .tautline_band = t.happened > 0 ? std::optional(Band{.max = 0.0})
-                                                           : std::nullopt});
+  findings.rows.push_back(
+      {.figure = "missed: " + which,
+       .unit = "%",
+       .tautline = t.happened > 0 ? std::optional(100.0 * t.missed / t.happened) : std::nullopt,
+       .tautline_band = t.happened > 0 ? std::optional(Band{.max = 0.0}) : std::nullopt});
 }
 
 Findings judge(const Setup& setup, const Results& results) {

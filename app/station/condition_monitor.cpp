@@ -148,7 +148,6 @@ void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
   ContactWatchInput c;
   c.flying = flying;
   c.usable = e.usable();
-  c.contacts = in.anchor->contact_count;
   c.p_WA = in.anchor->p_WA;
   c.p_WD = e.p_WD;
   c.nis = e.nis;
@@ -176,10 +175,10 @@ void ConditionMonitor::watchContact(const MonitorInput& in) noexcept {
   const Estimate& e = *in.estimate;
   const SensorHealth& health = *in.health;
   ContactObserverInput o;
-  constexpr ModeMask kWayBack =
-      maskOf({Mode::kBackUp, Mode::kReturn, Mode::kLand, Mode::kDescend});
-  o.flying = isFlying(f) && !isIn(in.mode, kWayBack) && e.usable() && health[SensorStream::kReel].ok() &&
-             health[SensorStream::kAngles].ok() && health[SensorStream::kAttitude].ok();
+  constexpr ModeMask kWayBack = maskOf({Mode::kBackUp, Mode::kReturn, Mode::kLand, Mode::kDescend});
+  o.flying = isFlying(f) && !isIn(in.mode, kWayBack) && e.usable() &&
+             health[SensorStream::kReel].ok() && health[SensorStream::kAngles].ok() &&
+             health[SensorStream::kAttitude].ok();
   o.L_total = L_total_ * e.reel_scale;
   o.theta = f.angles.value.theta - e.elevation_bias;
   o.phi = f.angles.value.phi - e.azimuth_zero;

@@ -32,8 +32,8 @@ class ReelScaleWatch {
   /// Scale and sigma as estimated; `known`: in flight, with an estimate that may be used.
   void update(bool known, double scale, double sigma, Findings& out) const noexcept {
     const double error = scale - 1.0;
-    const bool is = known && std::abs(error) > config_.tolerance &&
-                    std::abs(error) > config_.sigmas * sigma;
+    const bool is =
+        known && std::abs(error) > config_.tolerance && std::abs(error) > config_.sigmas * sigma;
     out.report(Condition::kReelScale, is, scale, 1.0 + std::copysign(config_.tolerance, error));
   }
 
