@@ -266,7 +266,15 @@ Innovation TetherFilter::updateLength(double L_total, double age, double weight,
 
 Innovation TetherFilter::updateParkedLength(double L_total, const Anchor& anchor) noexcept {
   const double sigma = std::hypot(config_.noise.length_sigma_m, config_.prior.parked_slack_sigma_m);
-  return updateLength(L_total, sigma * sigma, 0.0, anchor, kScaleIterations);
+  const double before = x_(kScale);
+  const Innovation out = updateLength(L_total, sigma * sigma, 0.0, anchor, kScaleIterations);
+  // Here the place is known, so position and scale have not moved together, as (23) supposes.
+  const double undo = before / x_(kScale);
+  if (out.accepted) {
+    P_.row(kScale) *= undo;
+    P_.col(kScale) *= undo;
+  }
+  return out;
 }
 
 Innovation TetherFilter::updateLength(double L_total, double variance, double age,

@@ -23,11 +23,11 @@ constexpr double kAnyParkedLength = 2.0;  // [m] an uncalibrated reel cannot be 
 /// What the station knows besides its sensors.
 struct Knowledge {
   const char* name;
-  double parked_slack;  // sigma that it is told [m]
-  double slack;         // that there is, relative to the way home
+  double home_sigma;  // of home and of the parked tether's slack, as it is told [m]
+  double slack;       // that there is, relative to the way home
 };
 constexpr std::array kKnowledge{
-    Knowledge{"parked, tether straight", 0.05, 0.001},
+    Knowledge{"parked, measured to 1 cm", 0.01, 0.001},
     Knowledge{"parked, tether 5 % slack", 0.05, 0.05},
     Knowledge{"parked length not used", 10.0, 0.001},
 };
@@ -41,7 +41,8 @@ std::string trialName(const Knowledge& k, double scale, int seed) {
 nlohmann::json fly(const Setup& setup, const Knowledge& knowledge, double scale, int seed) {
   StationConfig station = setup.tautline;
   station.core.localizer.prior.reel_scale_sigma = kNeverCalibrated;
-  station.core.localizer.prior.parked_slack_sigma_m = knowledge.parked_slack;
+  station.core.localizer.prior.parked_slack_sigma_m = knowledge.home_sigma;
+  station.core.localizer.prior.position_sigma_m = std::min(0.05, knowledge.home_sigma);
   station.core.detect.parked.length_tolerance_m = kAnyParkedLength;
   bench::LockstepConfig config =
       setup.flight(station, sceneInWorld(readScene(setup.folder / "../scenes/open.scene.toml")),

@@ -148,7 +148,6 @@ void ConditionMonitor::watchSpace(const MonitorInput& in) noexcept {
   ContactWatchInput c;
   c.flying = flying;
   c.usable = e.usable();
-  c.contacts = in.anchor->contact_count;
   c.p_WA = in.anchor->p_WA;
   c.p_WD = e.p_WD;
   c.nis = e.nis;

@@ -4,7 +4,7 @@
 /// Does the tether touch something that the mission does not know? Length and angles alone cannot
 /// tell: behind a contact they are as consistent as before, about another point. So three
 /// witnesses, each with its own threshold (docs/supervisor.md): the map, the barometric height, the
-/// localizer's innovations. A fourth, the lever, is estimation/contact_observer.h.
+/// localizer's innovations. A fourth, the lever, is in estimation/contact_observer.h.
 
 #include <optional>
 
@@ -24,8 +24,6 @@ struct ContactWatchConfig {
   double height_time_s{3.0};
   double nis{6.0};
   double nis_time_s{1.0};
-  double slip_height_m{0.35};
-  double slip_time_s{1.0};
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -43,7 +41,6 @@ struct ContactWatchConfig {
 struct ContactWatchInput {
   bool flying{false};
   bool usable{false};                             ///< The estimate.
-  int contacts{0};                                ///< On the executor's stack.
   Eigen::Vector3d p_WA{Eigen::Vector3d::Zero()};  ///< Active anchor.
   Eigen::Vector3d p_WD{Eigen::Vector3d::Zero()};
   double nis{0.0};  ///< Low-passed, per degree of freedom.
@@ -51,8 +48,7 @@ struct ContactWatchInput {
   std::optional<double> height_residual{};
 };
 
-/// kContactSlipped, and kUnplannedContact with the witness that went farthest beyond its threshold
-/// as a ratio to it.
+/// kUnplannedContact, with the witness that went farthest beyond its threshold as a ratio to it.
 /// Real-time safe: no allocation, no locks, no exceptions.
 class ContactWatch {
  public:
@@ -72,7 +68,6 @@ class ContactWatch {
   Time clear_of_map_{};       ///< Last time that the straight tether was clear of the map.
   Time innovations_small_{};  ///< Last time that they were.
   double height_residual_{0.0};
-  double slip_{0.0};  ///< The same, low-passed less.
 };
 
 }  // namespace tautline
