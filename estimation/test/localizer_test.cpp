@@ -95,6 +95,7 @@ TEST(Localizer, DoesNotInventAReelScale) {
   LocalizerConfig config = configFor(o);
   config.prior.reel_scale_sigma = 0.05;
   config.process.reel_scale_drift = 0.0;
+  config.prior.parked_slack_sigma_m = 10.0;  // what home tells is not what is tested here
   Flight flight(o, config);
   flight.fly(180.0);
   EXPECT_GT(flight.estimate.sigma_reel_scale, 0.04);
