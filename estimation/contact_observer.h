@@ -51,6 +51,8 @@ struct ContactObserverConfig {
   double settle_s{4.0};
   double relax_s{3.0};
   double form_s{0.9};
+  double longest_period_s{0.06};
+  double least_tension_n{0.4};
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -76,6 +78,10 @@ struct ContactObserverConfig {
     v.field("relax_s", relax_s, Range{0, 60},
             "a contact that was let go may hold on for this long");
     v.field("form_s", form_s, Range{0, 60}, "a planned contact may form this late");
+    v.field("longest_period_s", longest_period_s, Range{0.001, 10},
+            "slower angles or attitude show no accelerations: nothing is judged");
+    v.field("least_tension_n", least_tension_n, Range{0, 100},
+            "a tether with less nominal tension moves otherwise than its end: nothing is judged");
   }
 };
 

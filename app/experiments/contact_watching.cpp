@@ -25,6 +25,9 @@ constexpr ConditionSet kTells{Condition::kContactLost, Condition::kContactNotFor
                               Condition::kUnplannedContact, Condition::kTetherSnagged};
 
 /// What is wrong, and when it begins in the plant's truth.
+constexpr const char* kWaits = "it is told when the azimuth rate changes next, not before";
+constexpr const char* kUnseen = "length, angles and lean are the same before and after";
+
 struct Kind {
   const char* name;
   const char* scene;
@@ -37,6 +40,7 @@ struct Kind {
   bool obstacles;     ///< The scene has them.
   bool map_known;
   const char* note;
+  bool unseen{false};  ///< Nothing on board tells it.
 };
 constexpr std::array kKinds{
     Kind{"lost, one contact", "one_contact", "one_contact", "contact_off", 0.0, 0.8, true, true,
@@ -44,7 +48,7 @@ constexpr std::array kKinds{
     Kind{"lost, two contacts", "two_contacts", "two_contacts", "contact_off", 0.0, 0.8, true, true,
          true, ""},
     Kind{"slipped", "one_contact", "one_contact", "contact_slip", 0.0, 0.8, true, true, true,
-         "a contact counts that moves by more than 0.1 m; the friction that is left is none"},
+         "a contact counts that moves by more than 0.1 m; the friction that is left is none", true},
     Kind{"held half way", "open", "square", "snag", 0.5, 4.0, false, true, true, ""},
     Kind{"unplanned, mapped", "one_contact", "one_contact", nullptr, 0.0, 0.0, false, true, true,
          ""},
@@ -243,7 +247,8 @@ void judgeKind(const Tally& t, const Kind& kind, Findings& findings) {
   Row p95{.figure = "delay, 95 %: " + which,
           .unit = "s",
           .tautline_band = Band{.max = kPromised},
-          .note = tell(t, kind)};
+          .note = tell(t, kind),
+          .shortfall = kind.unseen ? kUnseen : kWaits};
   if (summary) p95.tautline = summary->p95;
   if (t.happened == 0) p95.tautline_band.reset();  // nothing to tell
   findings.rows.push_back(p95);
@@ -251,7 +256,8 @@ void judgeKind(const Tally& t, const Kind& kind, Findings& findings) {
       {.figure = "missed: " + which,
        .unit = "%",
        .tautline = t.happened > 0 ? std::optional(100.0 * t.missed / t.happened) : std::nullopt,
-       .tautline_band = t.happened > 0 ? std::optional(Band{.max = 0.0}) : std::nullopt});
+       .tautline_band = t.happened > 0 ? std::optional(Band{.max = 0.0}) : std::nullopt,
+       .shortfall = kind.unseen ? kUnseen : ""});
 }
 
 Findings judge(const Setup& setup, const Results& results) {

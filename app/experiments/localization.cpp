@@ -13,6 +13,9 @@
 namespace tautline::experiments {
 namespace {
 
+constexpr const char* kSagLimit =
+    "sag grows with the square of the length, and with it what is not known of the pull";
+
 // Published.
 constexpr double kStraightMean = 0.5335;   // [m]
 constexpr double kCorrectedMean = 0.3675;  // [m]
@@ -154,13 +157,15 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
        .as_published = s[kStraight].slope,
        .tautline = s[kOurs].slope,
        .as_published_band = Band{.min = kSlopeScatter},
-       .tautline_band = flat},
+       .tautline_band = flat,
+       .shortfall = kSagLimit},
       {.figure = "growth of error with length, corrected",
        .unit = "m/m",
        .as_published = s[kCorrected].slope,
        .tautline = s[kOurs].slope,
        .as_published_band = Band{-kSlopeScatter, kSlopeScatter},
-       .tautline_band = flat},
+       .tautline_band = flat,
+       .shortfall = kSagLimit},
       {.figure = "hovers lower than their target, straight tether",
        .unit = "%",
        .published = 100.0,
@@ -174,7 +179,9 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
       {.figure = "growth of error with length at 1 N",
        .unit = "m/m",
        .tautline = s[kOursAt1N].slope,
-       .tautline_band = flat},
+       .tautline_band = flat,
+       .shortfall = "the biases of angle sensor, azimuth and reel, whose error is in proportion to "
+                    "the length: the next row is without them"},
       {.figure = "growth of error with length at 1 N, no bias",
        .unit = "m/m",
        .tautline = s[kUnbiasedAt1N].slope,
@@ -186,7 +193,8 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
        .as_published = static_cast<double>(published_lost),
        .tautline = static_cast<double>(our_lost),
        .as_published_band = Band{0.0, 0.0},
-       .tautline_band = Band{0.0, 0.0}},
+       .tautline_band = Band{0.0, 0.0},
+       .shortfall = "in a steep climb the pull of 0.3 N is taken for a slack tether"},
   };
 }
 

@@ -176,9 +176,14 @@ void ConditionMonitor::watchContact(const MonitorInput& in) noexcept {
   const SensorHealth& health = *in.health;
   ContactObserverInput o;
   constexpr ModeMask kWayBack = maskOf({Mode::kBackUp, Mode::kReturn, Mode::kLand, Mode::kDescend});
+  const ContactObserverConfig& c = config_.contact_observer;
+  const auto good = [&](SensorStream stream) {
+    return health[stream].ok() && health[stream].period <= c.longest_period_s;
+  };
   o.flying = isFlying(f) && !isIn(in.mode, kWayBack) && e.usable() &&
-             health[SensorStream::kReel].ok() && health[SensorStream::kAngles].ok() &&
-             health[SensorStream::kAttitude].ok();
+             health[SensorStream::kReel].ok() && good(SensorStream::kAngles) &&
+             good(SensorStream::kAttitude) &&
+             config_.localizer.nominal_tension_n >= c.least_tension_n;
   o.L_total = L_total_ * e.reel_scale;
   o.theta = f.angles.value.theta - e.elevation_bias;
   o.phi = f.angles.value.phi - e.azimuth_zero;
@@ -187,8 +192,8 @@ void ConditionMonitor::watchContact(const MonitorInput& in) noexcept {
   o.G = config_.localizer.vehicle_weight_n;
   o.anchor = *in.anchor;
   const ContactVerdict& verdict = observer_.update(in.now, o);
-  const auto report = [&](C c, TetherHypothesis hypothesis) {
-    findings_.report(c, verdict.hypothesis == hypothesis, verdict.evidence, 1.0);
+  const auto report = [&](C condition, TetherHypothesis hypothesis) {
+    findings_.report(condition, verdict.hypothesis == hypothesis, verdict.evidence, 1.0);
   };
   report(C::kContactLost, TetherHypothesis::kLost);
   report(C::kContactNotFormed, TetherHypothesis::kNotFormed);
