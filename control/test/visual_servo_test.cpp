@@ -130,18 +130,21 @@ TEST(VisualServo, StaysInsideTheLimitsAndOffTheHeap) {
   scene.normal_W = {0.0, 0.0, 1.0};
   VisualServo servo(VisualServoConfig{});
   const VehicleLimits limits;
+  constexpr double kRounding = 1e-12;
   Time now{std::chrono::seconds(1)};
   testing::MallocGuard guard;
   for (int i = 0; i < 400; ++i, now += milliseconds(50)) {
     const TeleopRates r = servo.update(now, scene.input(now));
-    EXPECT_LE(std::abs(r.length), limits.length_rate_mps);
-    EXPECT_LE(std::abs(r.elevation), limits.elevation_rate_radps);
-    EXPECT_LE(std::abs(r.azimuth), limits.azimuth_rate_radps);
+    EXPECT_LE(std::abs(r.length), limits.length_rate_mps + kRounding);
+    EXPECT_LE(std::abs(r.elevation), limits.elevation_rate_radps + kRounding);
+    EXPECT_LE(std::abs(r.azimuth), limits.azimuth_rate_radps + kRounding);
     EXPECT_LE(std::abs(r.yaw), limits.yaw_rate_radps);
     EXPECT_LE(std::abs(r.gimbal_pitch), limits.gimbal_pitch_rate_radps);
     scene.move(r);
   }
-  EXPECT_EQ(guard.allocations(), 0);
+  if (testing::MallocGuard::available()) {
+    EXPECT_EQ(guard.allocations(), 0);
+  }
 }
 
 }  // namespace

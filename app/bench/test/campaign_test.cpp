@@ -96,7 +96,7 @@ TEST(Scenario, NamesThatAreNoneAreListedWithLineAndKey) {
   says("[[expect]]\nbound = \"mood\"\n", {"mood", "height_m"});
   says("[[expect]]\nwithin_s = 1.0\n", {"one of mode, condition, clear, event, bound"});
   says("[[operator]]\nverb = \"sing\"\n", {"sing", "navigate"});
-  says("[[fault]]\ntarget = \"camera\"\nmode = \"off\"\n", {"not supported", "no camera"});
+  says("[[fault]]\ntarget = \"camera\"\nmode = \"off\"\n", {"not supported", "video"});
   says("colour = \"red\"\n", {"colour"});
 }
 

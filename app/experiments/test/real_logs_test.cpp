@@ -159,8 +159,9 @@ TEST(ReplayedFlight, TheSupervisorSeesSensorsThatGoSilent) {
   ASSERT_TRUE(silent.intervened.has_value());
   EXPECT_GT(*silent.intervened, pause_after);
   EXPECT_LT(*silent.intervened, pause_after + 10);
-  EXPECT_TRUE(silent.reasons.any(
-      {Condition::kReelStale, Condition::kAnglesStale, Condition::kLocalizationLost}));
+  EXPECT_TRUE(silent.reasons.any({Condition::kVehicleStale, Condition::kReelStale,
+                                  Condition::kAnglesStale, Condition::kLocalizationLost}))
+      << describe(silent.reasons);
 }
 
 TEST(PublishedFlights, FlightsWithContactsAreReproduced) {
