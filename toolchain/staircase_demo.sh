@@ -18,7 +18,8 @@ while [[ $# -gt 0 ]]; do
   shift
 done
 out=$(realpath -m "${out:-$root/flights/$(date +%Y%m%d-%H%M%S)-staircase}")
-mkdir -p "$out"
+plans=$out/plans
+mkdir -p "$plans"
 
 bin=$root/build/bin
 map=$root/config/scenes/dissertation/staircase.scene.toml
@@ -26,8 +27,8 @@ params=$root/config/risk/dissertation.toml
 inflation=0.15  # the vehicle's radius, by which the map's obstacles are grown
 
 plan() { # plan NAME GOAL
-  "$bin/tautline-plan" plan --map "$map" --params "$params" --planner directional --goal "$2" --json --svg "$out/plan_$1.svg" \
-    --csv "$out/plan_$1.csv" -o "$out/$1.mission.toml" >"$out/plan_$1.json"
+  "$bin/tautline-plan" plan --map "$map" --params "$params" --planner directional --goal "$2" --json --svg "$plans/$1.svg" \
+    --csv "$plans/$1.csv" -o "$plans/$1.mission.toml" >"$plans/$1.json"
 }
 say "planning to both viewpoints"
 plan red 5.0,0.6,4.2
@@ -35,11 +36,11 @@ plan green 3.8,2.6,1.4
 chosen=$("$root/toolchain/staircase_report.py" choose "$out")
 
 # The world to fly in: the things inside the voxels, and the platform that the drone is parked on.
-"$bin/tautline-bench" campaign --map "$map" --params "$params" --mission "$out/$chosen.mission.toml" --inflation "$inflation" --flights 0 \
+"$bin/tautline-bench" campaign --map "$map" --params "$params" --mission "$plans/$chosen.mission.toml" --inflation "$inflation" --flights 0 \
   --write-scene "$out/staircase.scene.toml" >/dev/null
 
 flown=0
-"$root/toolchain/demo.sh" --out "$out" --mission "$out/$chosen.mission.toml" --scene "$out/staircase.scene.toml" "${more[@]}" || flown=$?
+"$root/toolchain/demo.sh" --out "$out" --mission "$plans/$chosen.mission.toml" --scene "$out/staircase.scene.toml" "${more[@]}" || flown=$?
 "$root/toolchain/staircase_report.py" report "$out" "$chosen"
 echo "staircase $out/staircase.html"
 exit "$flown"

@@ -14,7 +14,7 @@ VIEWPOINTS = ("red", "green")
 
 
 def plans(folder):
-    return {name: json.loads((folder / f"plan_{name}.json").read_text()) for name in VIEWPOINTS}
+    return {name: json.loads((folder / "plans" / f"{name}.json").read_text()) for name in VIEWPOINTS}
 
 
 def rows(folder):
@@ -45,10 +45,9 @@ def report(folder, chosen):
         "<h1>Staircase</h1>\n<p>The paths of least risk to both viewpoints; the one of the higher utility (reward / risk) is flown.</p>\n"
         "<table><tr><th>viewpoint</th><th>risk</th><th>reward</th><th>utility</th><th>states</th></tr>\n" + table + "</table>\n")
     for name in VIEWPOINTS:
-        page += picture(folder / f"plan_{name}.svg", f"Plan to the {name} viewpoint, coloured by state risk")
-    flown = folder / "path.svg"
-    if flown.exists():
-        page += picture(flown, f"The flight to the {chosen} viewpoint")
+        page += picture(folder / "plans" / f"{name}.svg", f"Plan to the {name} viewpoint, coloured by state risk")
+    for view, side in (("top", "above"), ("front", "the front")):
+        page += picture(folder / f"{view}.svg", f"The flight to the {chosen} viewpoint, from {side}")
     page += '<p><a href="report.html">Report of the flight</a></p></body></html>\n'
     (folder / "staircase.html").write_text(page)
 
