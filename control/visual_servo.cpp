@@ -59,6 +59,7 @@ void VisualServo::take(Time now, const ServoInput& in) noexcept {
   const std::optional<double> heading = headingOf(*in.R_WB);
   const double age = toSeconds(now - s.taken);
   if (!heading || age < 0.0 || age > config_.lost_after_s || !s.p_CM.allFinite()) return;
+  if (!s.normal_C.allFinite() || s.normal_C.squaredNorm() < 0.25) return;
   const Eigen::Quaterniond R_WC = uprightCamera(*heading, *in.gimbal_pitch);
   const bool tracks = config_.law == ServoLaw::kTracking;
   const Eigen::Vector3d p_WC =

@@ -63,12 +63,13 @@ ContactObserver::ContactObserver(const ContactObserverConfig& config) noexcept
 
 const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInput& in) noexcept {
   const double dt = last_ && now > *last_ ? toSeconds(now - *last_) : 0.0;
-  if (!in.flying || !isFinite(in)) {
-    if (!in.flying) began_.reset();
+  if (!in.flying) {
+    began_.reset();
     last_.reset();
-    if (!began_) verdict_ = {};
+    verdict_ = {};
     return verdict_;
   }
+  if (!isFinite(in)) return verdict_;
   if (last_ && dt <= 0.0) return verdict_;
   const Eigen::Vector3d d = toCartesian({1.0, in.theta, in.phi});
   const double L = std::max(0.0, in.L_total - in.anchor.L_static);
@@ -81,6 +82,7 @@ const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInp
   if (anew) {
     offset_.setZero();
     anchor_ = in.anchor;
+    anchors_.fill(std::nullopt);
     p_.reset(in.anchor.p_WA + L * d, a_);
     d_.reset(d, a_);
     f_.reset(acceleration(in, d), a_);
@@ -126,6 +128,14 @@ void ContactObserver::changeAnchor(Time now, const ContactObserverInput& in,
   unplanned_.fill(0.0);
 }
 
+/// Of the active contact; null for the reel, and where the observer was not there when the contact
+/// was made.
+const Eigen::Vector3d* ContactObserver::anchorBelow() const noexcept {
+  if (anchor_.contact_count < 1 || anchor_.contact_count > kDeepest + 1) return nullptr;
+  const auto& below = anchors_[static_cast<std::size_t>(anchor_.contact_count - 1)];
+  return below ? &*below : nullptr;
+}
+
 /// Log likelihood ratio of a lever that is `extra` longer against the active one.
 double ContactObserver::evidenceOf(double extra, double L) const noexcept {
   const double expected = extra * turning_;
@@ -148,10 +158,8 @@ void ContactObserver::judge(Time now, double dt, double L) noexcept {
     unplanned_.fill(0.0);
     return;
   }
-  if (anchor_.contact_count > 0) {
-    const Eigen::Vector3d& below =
-        anchors_[static_cast<std::size_t>(std::clamp(anchor_.contact_count - 1, 0, kDeepest))];
-    const double extra = (anchor_.p_WA - below).norm();
+  if (const Eigen::Vector3d* const below = anchorBelow()) {
+    const double extra = (anchor_.p_WA - *below).norm();
     if (extra >= config_.least_lever_m) {
       const double evidence = evidenceOf(extra, L);
       add(before_, evidence);
@@ -183,8 +191,7 @@ void ContactObserver::decide(const ContactObserverInput& in, const Eigen::Vector
   if (evidence < 1.0) return;
   if (earlier) {
     verdict_.hypothesis = formed_ ? TetherHypothesis::kLost : TetherHypothesis::kNotFormed;
-    verdict_.p_WC =
-        anchors_[static_cast<std::size_t>(std::clamp(anchor_.contact_count - 1, 0, kDeepest))];
+    if (const Eigen::Vector3d* const below = anchorBelow()) verdict_.p_WC = *below;
     verdict_.lever = L + (anchor_.p_WA - verdict_.p_WC).norm();
   } else {
     const auto share = kUnplannedShares[static_cast<std::size_t>(most - unplanned_.begin())];

@@ -131,16 +131,12 @@ class ContactObserver {
   /// One cycle. Time that does not go on, and readings that are not finite, change nothing.
   [[nodiscard]] const ContactVerdict& update(Time now, const ContactObserverInput& in) noexcept;
 
-  /// Sideways velocity that the lean has and the turning about the active anchor has not [m/s],
-  /// and what a metre of lever more would add to it [1/s]. For tests and tuning.
-  [[nodiscard]] double residual() const noexcept { return residual_; }
-  [[nodiscard]] double turning() const noexcept { return turning_; }
-
  private:
   static constexpr std::array<double, 3> kUnplannedShares{0.25, 0.5, 0.75};
   static constexpr int kDeepest = 64;  // contacts whose places are remembered
 
   void changeAnchor(Time now, const ContactObserverInput& in, const Eigen::Vector3d& d) noexcept;
+  [[nodiscard]] const Eigen::Vector3d* anchorBelow() const noexcept;
   void judge(Time now, double dt, double L) noexcept;
   void decide(const ContactObserverInput& in, const Eigen::Vector3d& d, double L) noexcept;
   [[nodiscard]] double evidenceOf(double extra, double L) const noexcept;
@@ -150,7 +146,8 @@ class ContactObserver {
   std::optional<Time> last_, began_, changed_;
   bool popped_{false};
   bool formed_{false};  ///< The active contact was seen to hold.
-  std::array<Eigen::Vector3d, kDeepest + 1> anchors_{};
+  std::array<std::optional<Eigen::Vector3d>, kDeepest + 1>
+      anchors_{};  ///< By depth; as far as seen.
   Anchor anchor_;
   Eigen::Vector3d offset_{Eigen::Vector3d::Zero()};
   BandFilter p_, d_, f_;

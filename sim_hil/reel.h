@@ -3,10 +3,12 @@
 /// @file
 /// The ground station's reel: a drum with an encoder, driven at a rate or holding a tension.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 
+#include "common/error.h"
 #include "common/fields.h"
 
 namespace tautline::sim {
@@ -53,6 +55,14 @@ struct ReelConfig {
             "in mode tension: extra rate over the tension's error");
     v.field("layer_per_m", layer, Range{0, 0.05},
             "relative loss of metres per count with each metre paid out: the drum gets thinner");
+  }
+
+  /// Throws InputError for what a single range cannot say.
+  void validate() const {
+    if (layer * std::max(max_length, power_on_length) < 0.9) return;
+    throw InputError({.key = "layer_per_m",
+                      .problem = "leaves nothing of the drum when all tether is out",
+                      .allowed = "less than 0.9 over max_length_m and power_on_length_m"});
   }
 };
 

@@ -1,9 +1,12 @@
 #include "app/bench/batch.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -19,42 +22,58 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kSeparator = '\t';
+constexpr char kCut = '\x18';  // ASCII CAN
 
-/// Lines "key<TAB>result". A run that was killed leaves half a line, without its line feed.
+/// Lines "key<TAB>result", each written at once. A process that was killed in its midst leaves half
+/// a line; whoever comes next ends it with a mark, for good.
 class ResultFile {
  public:
   explicit ResultFile(const std::string& folder) {
     if (folder.empty()) return;
     std::error_code ignored;
     fs::create_directories(folder, ignored);
-    const fs::path path = fs::path(folder) / "results.txt";
+    path_ = (fs::path(folder) / "results.txt").string();
     bool whole = true;
     std::string line;
-    for (std::ifstream in(path); std::getline(in, line);) {
+    for (std::ifstream in(path_); std::getline(in, line);) {
       whole = !in.eof();
       const std::size_t tab = line.find(kSeparator);
-      if (whole && tab != std::string::npos) known_[line.substr(0, tab)] = line.substr(tab + 1);
+      if (whole && tab != std::string::npos && line.back() != kCut)
+        known_[line.substr(0, tab)] = line.substr(tab + 1);
     }
-    out_.open(path, std::ios::app);
-    if (!out_) {
-      throw InputError({.file = path.string(),
-                        .problem = "cannot be written",
-                        .remedy = "choose another folder"});
-    }
-    if (!whole) out_ << '\n';
+    file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ < 0) fail();
+    if (!whole) write(std::string(1, kCut));
   }
+  ~ResultFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  ResultFile(const ResultFile&) = delete;
+  ResultFile& operator=(const ResultFile&) = delete;
 
   [[nodiscard]] const std::string* find(const std::string& key) const {
     const auto found = known_.find(key);
     return found == known_.end() ? nullptr : &found->second;
   }
   void add(const std::string& key, const std::string& line) {
-    if (out_.is_open()) out_ << key << kSeparator << line << std::endl;
+    if (file_ >= 0) write(key + kSeparator + line);
   }
 
  private:
+  void write(const std::string& line) const {
+    const std::string text = line + '\n';
+    if (::write(file_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) fail();
+  }
+  [[noreturn]] void fail() const {
+    throw InputError({.file = path_,
+                      .problem = std::string("cannot be written: ") + std::strerror(errno),
+                      .remedy = "choose another folder"},
+                     ExitCode::kFailed);
+  }
+
+  std::string path_;
+  int file_{-1};
   std::map<std::string, std::string> known_;
-  std::ofstream out_;
 };
 
 /// On a terminal a line that stays one line; elsewhere a line a minute.

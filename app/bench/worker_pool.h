@@ -19,7 +19,7 @@ struct JobOutcome {
 struct PoolJob {
   std::size_t count{0};  ///< Jobs 0 … count - 1.
   int workers{0};        ///< 0: one for each processor.
-  /// In a worker process. One line: nothing after a line feed counts.
+  /// In a worker process. One line: line feeds become blanks.
   std::function<std::string(std::size_t)> run;
   /// In the calling process, as they come.
   std::function<void(std::size_t, const JobOutcome&)> each;

@@ -26,6 +26,7 @@ constexpr ConditionSet kTells{Condition::kContactLost, Condition::kContactNotFor
 
 /// What is wrong, and when it begins in the plant's truth.
 constexpr const char* kWaits = "it is told when the azimuth rate changes next, not before";
+constexpr double kWorst = 60.0;  // of a delay that waits for a change [s]
 constexpr const char* kUnseen = "length, angles and lean are the same before and after";
 
 struct Kind {
@@ -248,15 +249,18 @@ void judgeKind(const Tally& t, const Kind& kind, Findings& findings) {
           .unit = "s",
           .tautline_band = Band{.max = kPromised},
           .note = tell(t, kind),
-          .shortfall = kind.unseen ? kUnseen : kWaits};
+          .shortfall = kind.unseen ? kUnseen : kWaits,
+          .shortfall_limit = Band{.max = kWorst}};
   if (summary) p95.tautline = summary->p95;
-  if (t.happened == 0) p95.tautline_band.reset();  // nothing to tell
+  // How far the contact slides without friction is chance; everything else is made to happen.
+  if (t.happened == 0 && kind.unseen) p95.tautline_band.reset();
   findings.rows.push_back(p95);
   findings.rows.push_back(
       {.figure = "missed: " + which,
        .unit = "%",
        .tautline = t.happened > 0 ? std::optional(100.0 * t.missed / t.happened) : std::nullopt,
-       .tautline_band = t.happened > 0 ? std::optional(Band{.max = 0.0}) : std::nullopt,
+       .tautline_band =
+           t.happened > 0 || !kind.unseen ? std::optional(Band{.max = 0.0}) : std::nullopt,
        .shortfall = kind.unseen ? kUnseen : ""});
 }
 

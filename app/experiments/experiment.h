@@ -39,13 +39,25 @@ struct Row {
   std::string note{};       ///< One sentence; may be empty.
   std::string shortfall{};  ///< What limits a goal that is known not to be met: the row does not
                             ///< pass, and does not fail the run. Empty: none is known.
+  Band shortfall_limit{};  ///< A figure that misses its band must still lie here, or the run fails.
 
   /// Every band is met; a band without its figure is not.
   [[nodiscard]] bool pass() const noexcept {
-    const auto met = [](const std::optional<Band>& band, const std::optional<double>& value) {
-      return !band || (value && band->has(*value));
-    };
     return met(as_published_band, as_published) && met(tautline_band, tautline);
+  }
+  /// Does not pass for a known reason, and is no worse than that reason explains.
+  [[nodiscard]] bool fallsShort() const noexcept {
+    const auto excused = [this](const std::optional<Band>& band,
+                                const std::optional<double>& value) {
+      return met(band, value) || !value || shortfall_limit.has(*value);
+    };
+    return !pass() && !shortfall.empty() && excused(as_published_band, as_published) &&
+           excused(tautline_band, tautline);
+  }
+
+ private:
+  static bool met(const std::optional<Band>& band, const std::optional<double>& value) noexcept {
+    return !band || (value && band->has(*value));
   }
 };
 

@@ -55,7 +55,7 @@ const std::vector<std::string> kColumns{
     "<pass",   "<note"};
 
 std::string passText(const Row& row) {
-  return row.pass() ? "yes" : row.shortfall.empty() ? "no" : "falls short";
+  return row.pass() ? "yes" : row.fallsShort() ? "falls short" : "no";
 }
 
 std::vector<std::string> cells(const Row& row) {
@@ -86,7 +86,7 @@ std::string pageOf(const Setup& setup, const std::vector<Chapter>& chapters,
     body += "<h2>" + escaped(e.title) + "</h2>\n<p>" + escaped(e.setup) + "</p>\n";
     report::HtmlTable table(kColumns);
     for (const Row& row : chapters[c].findings.rows)
-      table.add(cells(row), row.pass() ? "" : row.shortfall.empty() ? "error" : "warning");
+      table.add(cells(row), row.pass() ? "" : row.fallsShort() ? "warning" : "error");
     body += table.html();
     for (const Sheet& sheet : chapters[c].findings.sheets) {
       if (sheet.caption.empty()) continue;

@@ -13,6 +13,7 @@
 namespace tautline::experiments {
 namespace {
 
+constexpr Band kSlopeLimit{-0.05, 0.05};  // [m/m]
 constexpr const char* kSagLimit =
     "sag grows with the square of the length, and with it what is not known of the pull";
 
@@ -113,7 +114,7 @@ HoverSeries collect(const Results& results, const Side& side) {
   }
   if (out.errors.empty()) return out;
   out.mean = report::summarize(out.errors)->mean;
-  out.slope = report::slope(out.lengths, out.errors).value_or(0.0);
+  out.slope = report::slope(out.lengths, out.errors).value_or(out.slope);
   out.lower = 100.0 * static_cast<double>(lower) / static_cast<double>(out.errors.size());
   return out;
 }
@@ -129,7 +130,7 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
     (kSides[i].ours ? our_lost : published_lost) += s[i].lost;
   const Band goal{.max = 0.10};
   const Band goal_at_1{.max = 0.05};
-  const Band flat{.max = 0.005};
+  const Band flat{-0.005, 0.005};
   std::vector<Row>& rows = findings.rows;
   rows = {
       {.figure = "mean error, straight tether",
@@ -155,17 +156,15 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
       {.figure = "growth of error with length, straight tether",
        .unit = "m/m",
        .as_published = s[kStraight].slope,
-       .tautline = s[kOurs].slope,
-       .as_published_band = Band{.min = kSlopeScatter},
-       .tautline_band = flat,
-       .shortfall = kSagLimit},
+       .as_published_band = Band{.min = kSlopeScatter}},
       {.figure = "growth of error with length, corrected",
        .unit = "m/m",
        .as_published = s[kCorrected].slope,
        .tautline = s[kOurs].slope,
        .as_published_band = Band{-kSlopeScatter, kSlopeScatter},
        .tautline_band = flat,
-       .shortfall = kSagLimit},
+       .shortfall = kSagLimit,
+       .shortfall_limit = kSlopeLimit},
       {.figure = "hovers lower than their target, straight tether",
        .unit = "%",
        .published = 100.0,
@@ -181,7 +180,8 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
        .tautline = s[kOursAt1N].slope,
        .tautline_band = flat,
        .shortfall = "the biases of angle sensor, azimuth and reel, whose error is in proportion to "
-                    "the length: the next row is without them"},
+                    "the length: the next row is without them",
+       .shortfall_limit = kSlopeLimit},
       {.figure = "growth of error with length at 1 N, no bias",
        .unit = "m/m",
        .tautline = s[kUnbiasedAt1N].slope,
@@ -194,7 +194,8 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
        .tautline = static_cast<double>(our_lost),
        .as_published_band = Band{0.0, 0.0},
        .tautline_band = Band{0.0, 0.0},
-       .shortfall = "in a steep climb the pull of 0.3 N is taken for a slack tether"},
+       .shortfall = "in a steep climb the pull of 0.3 N is taken for a slack tether",
+       .shortfall_limit = Band{0.0, 4.0}},
   };
 }
 
@@ -230,10 +231,12 @@ Findings judge(const Setup& setup, const Results& results) {
   if (!setup.quick) {
     std::vector<plot::Point> flown;
     for (const double tension : kTensions) {
-      double sum = 0.0;
-      for (const Hover& hover : hovers())
-        sum += results.at(sweptName(tension, hover)).at("error").get<double>();
-      flown.push_back({tension, sum / static_cast<double>(hovers().size())});
+      std::vector<double> errors;
+      for (const Hover& hover : hovers()) {
+        const nlohmann::json& result = results.at(sweptName(tension, hover));
+        if (result.at("hovered").get<bool>()) errors.push_back(result.at("error"));
+      }
+      if (const auto summary = report::summarize(errors)) flown.push_back({tension, summary->mean});
     }
     findings.pictures.push_back(
         {"tension", "Mean error of the straight-line localizer against the vehicle's pull",

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -55,10 +56,11 @@ struct HoverSeries {
   std::vector<double> errors;          ///< [m]
   std::vector<Hover> flown;            ///< Those that came about.
   std::vector<Eigen::Vector3d> means;  ///< Of the true position, W [m].
-  double mean{0.0};                    ///< Of the errors [m].
-  double slope{0.0};                   ///< Of the errors over the lengths [m/m].
-  double lower{0.0};                   ///< Hovers below their target [%].
-  std::size_t lost{0};                 ///< Hovers that never came about.
+  /// Of the errors [m], and of the errors over the lengths [m/m]; infinite without hovers.
+  double mean{std::numeric_limits<double>::infinity()};
+  double slope{std::numeric_limits<double>::infinity()};
+  double lower{0.0};    ///< Hovers below their target [%].
+  std::size_t lost{0};  ///< Hovers that never came about.
 };
 using AllHoverSeries = std::array<HoverSeries, kLocalizationSides.size()>;
 

@@ -11,7 +11,8 @@ constexpr Duration kLimit = std::chrono::minutes(30);      // of the mission
 constexpr Duration kPatience = std::chrono::seconds(60);   // for the next waypoint
 constexpr Duration kHover = std::chrono::seconds(5);  // at the last waypoint, before it is judged
 constexpr Duration kSample = std::chrono::milliseconds(100);
-constexpr ConditionSet kLost{Condition::kLocalizationLost, Condition::kUnplannedContact};
+constexpr ConditionSet kLost{Condition::kLocalizationLost, Condition::kUnplannedContact,
+                             Condition::kContactLost, Condition::kContactNotFormed};
 constexpr ConditionSet kNeverThere{Condition::kMissionFailed, Condition::kOscillation};
 
 /// Flies on until the mission is left, whatever the reason.

@@ -15,6 +15,7 @@ constexpr double kWrong = 1.42;                      // 4.06 mm a count read as 
 constexpr std::array kScales{kWrong, 1.0 / kWrong};  // true metres per nominal metre
 constexpr std::array kPulls{0.5, 1.0};               // [N] by turns
 constexpr double kFound = 0.02;                      // relative error
+constexpr double kLeastFlown = 40.0;                 // a shorter flight shows nothing [s]
 constexpr double kJudged = 60.0;                     // after take-off [s]
 constexpr Duration kLimit = std::chrono::seconds(90);
 constexpr double kNeverCalibrated = 0.5;  // prior sigma of the scale
@@ -122,17 +123,18 @@ Findings judge(const Setup& setup, const Results& results) {
     for (const double scale : kScales) {
       const Worst worst = worstOf(setup, results, k, scale);
       const std::string which = fmt::format("true scale {:.3f}, {}", scale, k.name);
-      Row error{.figure = "scale error after 60 s, " + which,
-                .unit = "%",
-                .tautline = 100.0 * worst.error,
-                .note = fmt::format("worst of {} flights, the shortest over after {:.0f} s; the "
-                                    "filter's own sigma {:.1f} %; REEL_SCALE told in {}",
-                                    seedCount(setup), worst.flown, 100.0 * worst.sigma,
-                                    worst.told)};
+      Row error{
+          .figure = "scale error after 60 s, " + which,
+          .unit = "%",
+          .tautline = 100.0 * worst.error,
+          .note = fmt::format("worst of {} flights, the shortest over after {:.0f} s; the "
+                              "filter's own sigma {:.1f} %; REEL_SCALE told in {}",
+                              seedCount(setup), worst.flown, 100.0 * worst.sigma, worst.told)};
       Row time{.figure = "time to 2 %, " + which,
                .unit = "s",
                .tautline = worst.wrong_until,
                .note = "last moment with a larger error, worst flight; 0: found on the ground"};
+      if (worst.flown < kLeastFlown) error.tautline = time.tautline = std::nullopt;
       if (judged) {
         error.tautline_band = Band{.max = 100.0 * kFound};
         // A scale that is never found is wrong until the flight ends.

@@ -18,6 +18,11 @@
 namespace tautline::experiments {
 namespace {
 
+InputError tooLong(const char* what) {
+  return InputError({.problem = std::string("has more ") + what + " than a mission can hold"},
+                    ExitCode::kFailed);
+}
+
 constexpr double kSamePoint = 1e-5;    // the log's digits [m]
 constexpr double kAtReel = 0.02;       // a contact this near the origin is the reel [m]
 constexpr double kPositionOff = 2e-3;  // [m]
@@ -40,6 +45,7 @@ std::unique_ptr<MissionPlan> missionOf(const Recording& recording) {
   const std::vector<Eigen::Vector3d> contacts = contactsOf(recording);
   auto plan = std::make_unique<MissionPlan>();
   plan->hash = 1;
+  if (contacts.size() > static_cast<std::size_t>(kMaxContacts)) throw tooLong("contacts");
   for (const Eigen::Vector3d& contact : contacts) {
     const int i = plan->contact_count++;
     plan->contacts[static_cast<std::size_t>(i)] = {.id = i + 1, .p_WC = contact - reel};
@@ -53,6 +59,7 @@ std::unique_ptr<MissionPlan> missionOf(const Recording& recording) {
     waypoint.p_WD = row.p_WTarget - reel;
     for (std::size_t c = 0; c < contacts.size(); ++c)
       if ((contacts[c] - row.p_WA).norm() < kSamePoint) waypoint.contact = static_cast<int>(c) + 1;
+    if (plan->waypoint_count == kMaxWaypoints) throw tooLong("waypoints");
     plan->waypoints[static_cast<std::size_t>(plan->waypoint_count++)] = waypoint;
   }
   return plan;
@@ -136,12 +143,14 @@ LogAgreement agreement(const Recording& recording, const StationConfig& station,
     const double off = (estimate.p_WD + reel - row.p_WD).norm();
     ++result.rows;
     result.position = std::max(result.position, off);
-    result.position_off += off > kPositionOff ? 1 : 0;
+    result.position_off += off <= kPositionOff ? 0 : 1;  // NaN is off
     if (!with_targets) continue;
     if (!started) started = executor.start(*mission, estimate);
     const ExecutorStatus& status = executor.status();
     ++result.targets;
-    result.other_target += status.waypoint == waypoint ? 0 : 1;
+    const bool finite = std::isfinite(row.target_length) && std::isfinite(row.target_elevation) &&
+                        std::isfinite(row.target_azimuth) && std::isfinite(status.target_length);
+    result.other_target += status.waypoint == waypoint && finite ? 0 : 1;
     result.target_length =
         std::max(result.target_length, std::abs(status.target_length - row.target_length));
     result.target_elevation =

@@ -49,7 +49,7 @@ Tally tally(const std::vector<Chapter>& chapters) {
   Tally t;
   for (const Chapter& chapter : chapters) {
     for (const Row& row : chapter.findings.rows) {
-      ++(row.pass() ? t.passed : row.shortfall.empty() ? t.failed : t.short_of);
+      ++(row.pass() ? t.passed : row.fallsShort() ? t.short_of : t.failed);
     }
   }
   return t;

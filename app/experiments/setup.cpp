@@ -1,5 +1,8 @@
 #include "app/experiments/setup.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "common/mission/mission_file.h"
 #include "common/toml/config_file.h"
 #include "common/toml/toml_file.h"
@@ -7,8 +10,14 @@
 namespace tautline::experiments {
 
 std::string Setup::fingerprint() const {
+  namespace fs = std::filesystem;
   std::string text = readTextFile("/proc/self/exe");
-  text += dumpConfig(plant) + dumpConfig(as_published) + dumpConfig(tautline);
+  // Scenes, missions and risk parameters stand beside the set-up's own files.
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::weakly_canonical(folder / "..")))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) text += file.filename().string() + readTextFile(file);
   text += (quick ? "quick " : "whole ") + std::to_string(seed);
   return hashText(fnv1a(text));
 }

@@ -254,6 +254,13 @@ TEST(Batch, GoesOnWhereItWasInterrupted) {
   EXPECT_EQ(second.outcomes[1].line, "second 1");
   EXPECT_EQ(second.outcomes[2].line, "first 2");
   EXPECT_EQ(runBatch(batch).known, 3U);
+
+  // Half a line that nobody has flown again stays half a line.
+  batch.keys.push_back("d");
+  std::ofstream(folder / "results.txt", std::ios::app) << "d\thalf";
+  batch.run = [](std::size_t) -> std::string { throw InputError({.problem = "not now"}); };
+  EXPECT_EQ(runBatch(batch).known, 3U);
+  EXPECT_EQ(runBatch(batch).known, 3U);
   fs::remove_all(folder);
 }
 

@@ -66,6 +66,10 @@ TEST(Report, CountsWhatPasses) {
   EXPECT_EQ(tally(chapters).passed, 1) << "a goal that is met after all";
   EXPECT_EQ(tally(chapters).short_of, 1);
   EXPECT_EQ(tally(chapters).failed, 0);
+  Row& bad = chapters[0].findings.rows[1];
+  bad.as_published = 0.5;
+  bad.shortfall_limit = Band{.min = 0.6};
+  EXPECT_EQ(tally(chapters).failed, 1) << "worse than the reason explains";
 }
 
 TEST(Report, JsonHasTheContractsKeys) {
