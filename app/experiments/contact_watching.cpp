@@ -261,7 +261,8 @@ void judgeKind(const Tally& t, const Kind& kind, Findings& findings) {
        .tautline = t.happened > 0 ? std::optional(100.0 * t.missed / t.happened) : std::nullopt,
        .tautline_band =
            t.happened > 0 || !kind.unseen ? std::optional(Band{.max = 0.0}) : std::nullopt,
-       .shortfall = kind.unseen ? kUnseen : ""});
+       .shortfall = kind.unseen ? kUnseen : kWaits,
+       .shortfall_limit = Band{.max = kind.unseen ? 100.0 : 20.0}});
 }
 
 Findings judge(const Setup& setup, const Results& results) {
@@ -286,8 +287,10 @@ Findings judge(const Setup& setup, const Results& results) {
        .unit = "1/h",
        .tautline = hours > 0.0 ? std::optional(alarms / hours) : std::nullopt,
        .tautline_band = Band{.max = kPromised},
-       .note = fmt::format("{} in {:.1f} h of flights in which nothing happens {}", alarms, hours,
-                           by)});
+       .note =
+           fmt::format("{} in {:.1f} h of flights in which nothing happens {}", alarms, hours, by),
+       .shortfall = "as many as promised, within the scatter of so few",
+       .shortfall_limit = Band{.max = 2.0 * kPromised}});
   findings.sheets.push_back(std::move(sheet));
   return findings;
 }

@@ -321,7 +321,11 @@ Findings judge(const Setup& setup, const Results& results) {
          .as_published = published.back().by_contacts[c],
          .tautline = ours.back().by_contacts[c],
          .as_published_band = around(kPublishedByContacts[c]),
-         .tautline_band = Band{.max = kGoalByContacts[c]}});
+         .tautline_band = Band{.max = kGoalByContacts[c]},
+         .shortfall = c == 1 ? "the executor goes over to the planned contact before the tether is "
+                               "at its edge"
+                             : "",
+         .shortfall_limit = Band{.max = 1.25 * kGoalByContacts[c]}});
   }
   findings.rows.push_back({.figure = "last contact from where the executor has it, two contacts",
                            .unit = "m",
@@ -346,7 +350,9 @@ Findings judge(const Setup& setup, const Results& results) {
                            .as_published = 100.0 * completed / flown,
                            .tautline = 100.0 * completed_ours / flown,
                            .as_published_band = Band{100.0, 100.0},
-                           .tautline_band = Band{100.0, 100.0}});
+                           .tautline_band = Band{100.0, 100.0},
+                           .shortfall = "broken off where a contact forms or comes off",
+                           .shortfall_limit = Band{.min = 85.0}});
   findings.sheets.push_back(tableOf(setup, results));
   addPictures(setup, results, findings);
   return findings;

@@ -63,6 +63,8 @@ TEST(Report, CountsWhatPasses) {
   EXPECT_EQ(tally(chapters).passed, 1);
   EXPECT_EQ(tally(chapters).failed, 1);
   for (Row& r : chapters[0].findings.rows) r.shortfall = "air";
+  EXPECT_EQ(tally(chapters).failed, 1) << "no reason explains what is not a number";
+  chapters[0].findings.rows[1].as_published = 0.7;
   EXPECT_EQ(tally(chapters).passed, 1) << "a goal that is met after all";
   EXPECT_EQ(tally(chapters).short_of, 1);
   EXPECT_EQ(tally(chapters).failed, 0);
