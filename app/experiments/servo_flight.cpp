@@ -6,7 +6,6 @@
 #include <random>
 
 #include "app/experiments/tracked_flight.h"
-#include "app/station/mission_upload.h"
 
 namespace tautline::experiments {
 namespace {
@@ -97,29 +96,16 @@ ServoFlight flyServo(const ServoFlightConfig& config) {
     }
     return true;
   };
-  bool armed = false;
-  for (int tries = 0; !armed && tries < 60; ++tries) {
-    for (int i = 0; i < 50; ++i) bench.step();
-    armed = ask(Request::kArm);
-  }
-  if (!armed || !ask(Request::kTakeoff) || !until(Mode::kHold, kPhaseLimit)) return flight;
-
   // The operator first brings the drone before the marker, which waits.
   const sim::Pose waiting = carried.at(0.0);
   const auto approach = missionThrough(
       {waiting.position + config.servo.standoff_m * (waiting.rotation * Eigen::Vector3d::UnitX())},
       kFacing);
   approach->waypoints[0].p_WL = waiting.position;
-  forEachChunk(*approach, [&](tautline::mission_chunk_t& chunk) {
-    chunk.session = kSession;
-    chunk.sequence = ++sequence;
-    const StepOutput& out = bench.step({}, &chunk);
-    return out.ack && out.ack->result == AckResult::kAccepted;
-  });
-  const StepOutput& out =
-      bench.step(OperatorCommand{kSession, ++sequence, Request::kNavigate, approach->hash});
-  const bool taken = out.ack && out.ack->result == AckResult::kAccepted;
-  if (!taken || !until(Mode::kHold, kPhaseLimit)) return flight;
+  const bench::MissionStart start =
+      bench::beginMission(bench, *approach, bench.now() + fromSeconds(2.0 * kPhaseLimit), {});
+  sequence = start.sequence;
+  if (!start.navigating || !until(Mode::kHold, kPhaseLimit)) return flight;
   bench.holdSticks(Sticks{kSession, true, {}});
   if (!ask(Request::kTeleop)) return flight;
 
