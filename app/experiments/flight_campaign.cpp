@@ -42,7 +42,6 @@ CampaignTally flyFlights(const CampaignFlight& flight, const CampaignOptions& op
   const bench::BatchResult result = bench::runBatch(batch);
   CampaignTally tally;
   tally.known = result.known;
-  tally.wall_s = result.wall_s;
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     const bench::JobOutcome& outcome = result.outcomes[i];
     if (!outcome.failure.empty()) {

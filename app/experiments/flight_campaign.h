@@ -50,7 +50,6 @@ struct CampaignTally {
   std::array<std::int64_t, kFlightEndNames.size()> ends{};  ///< By FlightEnd.
   std::vector<FlightVerdict> verdicts;                      ///< In the order of the seeds.
   std::size_t known{0};                                     ///< Of them found in the folder.
-  double wall_s{0.0};
 
   [[nodiscard]] std::int64_t flights() const noexcept {
     return static_cast<std::int64_t>(verdicts.size());

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "app/experiments/path_trials.h"
 
 namespace tautline::experiments {
@@ -42,21 +40,8 @@ Findings judge(const Setup& setup, const Results& results) {
                   .tautline = 100.0 * completed / flown,
                   .as_published_band = Band{100.0, 100.0},
                   .tautline_band = Band{100.0, 100.0}});
-  for (std::size_t k = 0; k < kIntervals.size(); ++k) {
-    rows.push_back(
-        {.figure = fmt::format("mean cross-track, position law, every {:g} m", kIntervals[k]),
-         .unit = "m",
-         .as_published = position[k].mean,
-         .tautline = ours[k].mean,
-         .tautline_band = Band{.max = kGoal}});
-  }
-  for (std::size_t k = 0; k < kIntervals.size(); ++k) {
-    rows.push_back(
-        {.figure = fmt::format("mean cross-track, velocity law, every {:g} m", kIntervals[k]),
-         .unit = "m",
-         .as_published = velocity[k].mean,
-         .tautline = ours[k].mean});
-  }
+  for (const Row& row : meanRows(table, Primitive::kPosition, kGoal)) rows.push_back(row);
+  for (const Row& row : meanRows(table, Primitive::kVelocity, {})) rows.push_back(row);
   const auto spread = [](const std::array<PathMeans, kIntervals.size()>& law) {
     const auto [least, most] = std::minmax_element(
         law.begin(), law.end(), [](const auto& a, const auto& b) { return a.mean < b.mean; });
@@ -90,12 +75,7 @@ Findings judge(const Setup& setup, const Results& results) {
                   .tautline = ours.back().turn / ours.front().turn,
                   .as_published_band = Band{.max = 1.0},
                   .note = "published: smoother with sparser waypoints"});
-  findings.sheets.push_back(pathSheet(table));
-  findings.pictures.push_back(
-      {"tracks", "First trial of each law, seen from above", tracksFigure(setup, plan, table)});
-  findings.pictures.push_back({"accuracy",
-                               "Accuracy and smoothness against the interval of waypoints",
-                               accuracyFigure(table)});
+  addPictures(setup, plan, table, findings);
   return findings;
 }
 

@@ -31,15 +31,10 @@ Findings judge(const Setup& setup, const Results& results) {
   const auto& ours = of(table, Primitive::kTautline);
   Findings findings;
   std::vector<Row>& rows = findings.rows;
+  rows = meanRows(table, Primitive::kPosition, kGoal);
   int growing = 0;
   double worst = 0.0;
   for (std::size_t k = 0; k < kIntervals.size(); ++k) {
-    rows.push_back(
-        {.figure = fmt::format("mean cross-track, position law, every {:g} m", kIntervals[k]),
-         .unit = "m",
-         .as_published = position[k].mean,
-         .tautline = ours[k].mean,
-         .tautline_band = Band{.max = kGoal}});
     if (k > 0 && position[k].mean > position[k - 1].mean) ++growing;
     worst = std::max(worst, ours[k].max);
   }
@@ -80,12 +75,7 @@ Findings judge(const Setup& setup, const Results& results) {
                   .tautline_band = Band{crossings, crossings},
                   .shortfall = "in a steep climb the pull of 0.3 N is taken for a slack tether",
                   .shortfall_limit = Band{.min = 0.85 * crossings}});
-  findings.sheets.push_back(pathSheet(table));
-  findings.pictures.push_back(
-      {"tracks", "First trial of each law, seen from above", tracksFigure(setup, plan, table)});
-  findings.pictures.push_back({"accuracy",
-                               "Accuracy and smoothness against the interval of waypoints",
-                               accuracyFigure(table)});
+  addPictures(setup, plan, table, findings);
   return findings;
 }
 

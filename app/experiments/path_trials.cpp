@@ -6,47 +6,7 @@
 
 namespace tautline::experiments {
 
-std::vector<Trial> pathTrials(const Setup& setup, const PathPlan& plan) {
-  std::vector<Trial> all;
-  for (const Primitive primitive : kPrimitives) {
-    for (const double interval : kIntervals) {
-      for (std::uint64_t i = 0; i < plan.trials[static_cast<std::size_t>(primitive)]; ++i) {
-        all.push_back(
-            {pathTrial(plan.path, primitive, interval, i), [&setup, plan, primitive, interval, i] {
-               return flyPath(setup, primitive, plan.path, interval, i, plan.limit, i == 0);
-             }});
-      }
-    }
-  }
-  return all;
-}
-
-PathTable pathTable(const PathPlan& plan, const Results& results) {
-  PathTable table;
-  for (const Primitive primitive : kPrimitives) {
-    const std::uint64_t trials = plan.trials[static_cast<std::size_t>(primitive)];
-    for (std::size_t k = 0; k < kIntervals.size(); ++k) {
-      PathMeans& m = table[static_cast<std::size_t>(primitive)][k];
-      m.interval = kIntervals[k];
-      for (std::uint64_t i = 0; i < trials; ++i) {
-        const PathFigures f =
-            pathFigures(results.at(pathTrial(plan.path, primitive, kIntervals[k], i)));
-        const double share = 1.0 / static_cast<double>(trials);
-        ++m.flights;
-        m.completed += f.completed ? 1 : 0;
-        m.trapped += f.at_axis > kTrapped ? 1 : 0;
-        m.mean += share * f.mean;
-        m.turn += share * f.turn;
-        m.bulge += share * f.bulge;
-        m.worst = std::max(m.worst, f.mean);
-        m.max = std::max(m.max, f.max);
-        m.at_axis = std::max(m.at_axis, f.at_axis);
-        if (i == 0) m.track = f.track;
-      }
-    }
-  }
-  return table;
-}
+namespace {
 
 Sheet pathSheet(const PathTable& table) {
   Sheet sheet{"flights",
@@ -100,6 +60,73 @@ plot::Figure accuracyFigure(const PathTable& table) {
   figure.panels = {panel("Accuracy", "mean cross-track error [m]", &PathMeans::mean),
                    panel("Smoothness", "mean turn every 0.1 m [deg]", &PathMeans::turn)};
   return figure;
+}
+
+}  // namespace
+
+std::vector<Trial> pathTrials(const Setup& setup, const PathPlan& plan) {
+  std::vector<Trial> all;
+  for (const Primitive primitive : kPrimitives) {
+    for (const double interval : kIntervals) {
+      for (std::uint64_t i = 0; i < plan.trials[static_cast<std::size_t>(primitive)]; ++i) {
+        all.push_back(
+            {pathTrial(plan.path, primitive, interval, i), [&setup, plan, primitive, interval, i] {
+               return flyPath(setup, primitive, plan.path, interval, i, plan.limit, i == 0);
+             }});
+      }
+    }
+  }
+  return all;
+}
+
+PathTable pathTable(const PathPlan& plan, const Results& results) {
+  PathTable table;
+  for (const Primitive primitive : kPrimitives) {
+    const std::uint64_t trials = plan.trials[static_cast<std::size_t>(primitive)];
+    for (std::size_t k = 0; k < kIntervals.size(); ++k) {
+      PathMeans& m = table[static_cast<std::size_t>(primitive)][k];
+      m.interval = kIntervals[k];
+      for (std::uint64_t i = 0; i < trials; ++i) {
+        const PathFigures f =
+            pathFigures(results.at(pathTrial(plan.path, primitive, kIntervals[k], i)));
+        const double share = 1.0 / static_cast<double>(trials);
+        ++m.flights;
+        m.completed += f.completed ? 1 : 0;
+        m.trapped += f.at_axis > kTrapped ? 1 : 0;
+        m.mean += share * f.mean;
+        m.turn += share * f.turn;
+        m.bulge += share * f.bulge;
+        m.worst = std::max(m.worst, f.mean);
+        m.max = std::max(m.max, f.max);
+        m.at_axis = std::max(m.at_axis, f.at_axis);
+        if (i == 0) m.track = f.track;
+      }
+    }
+  }
+  return table;
+}
+
+std::vector<Row> meanRows(const PathTable& table, Primitive law, std::optional<double> goal) {
+  std::vector<Row> rows;
+  for (std::size_t k = 0; k < kIntervals.size(); ++k) {
+    rows.push_back({.figure = fmt::format("mean cross-track, {} law, every {:g} m", nameOf(law),
+                                          kIntervals[k]),
+                    .unit = "m",
+                    .as_published = of(table, law)[k].mean,
+                    .tautline = of(table, Primitive::kTautline)[k].mean});
+    if (goal) rows.back().tautline_band = Band{.max = *goal};
+  }
+  return rows;
+}
+
+void addPictures(const Setup& setup, const PathPlan& plan, const PathTable& table,
+                 Findings& findings) {
+  findings.sheets.push_back(pathSheet(table));
+  findings.pictures.push_back(
+      {"tracks", "First trial of each law, seen from above", tracksFigure(setup, plan, table)});
+  findings.pictures.push_back({"accuracy",
+                               "Accuracy and smoothness against the interval of waypoints",
+                               accuracyFigure(table)});
 }
 
 }  // namespace tautline::experiments

@@ -4,6 +4,7 @@
 /// The flights along one path, by law and interval, and their means. Not real-time safe.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,12 +45,13 @@ using PathTable = std::array<std::array<PathMeans, kIntervals.size()>, kPrimitiv
   return table[static_cast<std::size_t>(primitive)];
 }
 
-[[nodiscard]] Sheet pathSheet(const PathTable& table);
-/// Tracks from above, a panel an interval.
-[[nodiscard]] plot::Figure tracksFigure(const Setup& setup, const PathPlan& plan,
-                                        const PathTable& table);
-/// Mean cross-track error and smoothness against interval.
-[[nodiscard]] plot::Figure accuracyFigure(const PathTable& table);
+/// Mean cross-track error at each interval, a published law beside ours; `goal` is ours [m].
+[[nodiscard]] std::vector<Row> meanRows(const PathTable& table, Primitive law,
+                                        std::optional<double> goal);
+/// The table; tracks from above, a panel an interval; mean cross-track error and smoothness
+/// against interval.
+void addPictures(const Setup& setup, const PathPlan& plan, const PathTable& table,
+                 Findings& findings);
 
 /// Sum of one figure over the laws' flights at all intervals.
 template <class Member>

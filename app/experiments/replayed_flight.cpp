@@ -218,23 +218,60 @@ LogFigures figuresOf(const Recording& recording) {
   return figures;
 }
 
-SupervisorVerdict verdictOn(const Recording& recording, const StationConfig& station) {
-  constexpr Duration kPeriod = std::chrono::milliseconds(10);
-  constexpr Duration kParked = std::chrono::seconds(6);
-  constexpr Duration kClimb = std::chrono::seconds(1);
-  constexpr double kUnknownVelocity = 0.5;  // [m/s]
-  // What the logs do not have is not judged: attitude, and commands.
-  constexpr ConditionSet kNotLogged{Condition::kAttitudeStale};
-  const Eigen::Vector3d reel = reelOf(recording);
-  Eigen::Vector3d home = recording.poses.front().p_WD - reel;
-  home.y() = 0.0;
+namespace {
 
+constexpr Duration kReplayPeriod = std::chrono::milliseconds(10);
+constexpr Duration kParked = std::chrono::seconds(6);  // before the first pose
+
+/// The station's configuration for a flight whose commands are not in the log.
+CoreConfig coreFor(const StationConfig& station, const Eigen::Vector3d& home) {
+  constexpr double kUnknownVelocity = 0.5;  // any velocity that the vehicle can have [m/s]
   CoreConfig core = station.core;
   core.guidance.home_position_m = home;
-  // Without the commands the filter has to allow for any velocity that the vehicle can have.
   core.localizer.process.velocity_sigma_mps = kUnknownVelocity;
   core.localizer.noise.use_altitude = false;
   core.detect.contact.height_residual_m = 100.0;
+  return core;
+}
+
+/// An operator who arms, takes off at `first` and navigates.
+Request requestIn(Mode mode, Time now, Time first) {
+  if (mode == Mode::kStandby && now < first) return Request::kArm;
+  if (mode == Mode::kArmed) return Request::kTakeoff;
+  if (mode == Mode::kHold) return Request::kNavigate;
+  return Request::kNone;
+}
+
+/// What the supervisor did `t` seconds after the first pose, in one cycle.
+void note(double t, const SupervisorOutput& out, ConditionSet conditions,
+          SupervisorVerdict& verdict) {
+  verdict.last_mode = out.mode;
+  if (out.changed && !out.reasons.empty() && !verdict.intervened && out.mode > Mode::kAuto) {
+    verdict.intervened = t;
+    verdict.mode = out.mode;
+    verdict.reasons = out.reasons;
+  }
+  for (const ConditionInfo& info : kConditionInfos) {
+    if (!conditions.has(info.condition) || !isWrong(info.condition)) continue;
+    auto at = std::find_if(verdict.raised.begin(), verdict.raised.end(),
+                           [&](const auto& r) { return r.condition == info.condition; });
+    if (at == verdict.raised.end()) {
+      verdict.raised.push_back({info.condition, t, 0.0});
+      at = verdict.raised.end() - 1;
+    }
+    at->lasted += toSeconds(kReplayPeriod);
+  }
+}
+
+}  // namespace
+
+SupervisorVerdict verdictOn(const Recording& recording, const StationConfig& station) {
+  constexpr Duration kClimb = std::chrono::seconds(1);
+  // What the logs do not have is not judged: attitude, and commands.
+  constexpr ConditionSet kNotLogged{Condition::kAttitudeStale};
+  Eigen::Vector3d home = recording.poses.front().p_WD - reelOf(recording);
+  home.y() = 0.0;
+  const CoreConfig core = coreFor(station, home);
   TelegramPort port(telegramsOf(recording, kParked, home));
   FotokiteDevice device(port, deviceOf(station));
   const auto localizer = std::make_unique<Localizer>(core.localizer);
@@ -255,7 +292,7 @@ SupervisorVerdict verdictOn(const Recording& recording, const StationConfig& sta
   int waypoint = -1;
   std::int64_t cycles = 0;
   std::int64_t usable = 0;
-  for (Time now = parked; now - kParked <= recording.cycles.back().now; now += kPeriod) {
+  for (Time now = parked; now - kParked <= recording.cycles.back().now; now += kReplayPeriod) {
     for (; next < recording.cycles.size() && recording.cycles[next].now + kParked <= now; ++next) {
       const std::vector<RecordedPose>& poses = recording.poses;
       if (next == 0 || poses[next].row.p_WTarget != poses[next - 1].row.p_WTarget) ++waypoint;
@@ -281,34 +318,14 @@ SupervisorVerdict verdictOn(const Recording& recording, const StationConfig& sta
                                                   .mode = supervisor.mode(),
                                                   .facts = facts})
                                         .without(kNotLogged);
-    Request request = Request::kNone;
-    if (supervisor.mode() == Mode::kStandby && now < first) request = Request::kArm;
-    if (supervisor.mode() == Mode::kArmed) request = Request::kTakeoff;
-    if (supervisor.mode() == Mode::kHold) request = Request::kNavigate;
-    const SupervisorOutput out = supervisor.step(now, conditions, request);
+    const SupervisorOutput out =
+        supervisor.step(now, conditions, requestIn(supervisor.mode(), now, first));
     if (now < first) continue;
-
-    const double t = toSeconds(now - first);
     ++cycles;
     usable += estimate.usable() ? 1 : 0;
-    verdict.last_mode = out.mode;
     verdict.reel_scale = estimate.reel_scale;
     verdict.sigma_reel_scale = estimate.sigma_reel_scale;
-    if (out.changed && !out.reasons.empty() && !verdict.intervened && out.mode > Mode::kAuto) {
-      verdict.intervened = t;
-      verdict.mode = out.mode;
-      verdict.reasons = out.reasons;
-    }
-    for (const ConditionInfo& info : kConditionInfos) {
-      if (!conditions.has(info.condition) || !isWrong(info.condition)) continue;
-      auto at = std::find_if(verdict.raised.begin(), verdict.raised.end(),
-                             [&](const auto& r) { return r.condition == info.condition; });
-      if (at == verdict.raised.end()) {
-        verdict.raised.push_back({info.condition, t, 0.0});
-        at = verdict.raised.end() - 1;
-      }
-      at->lasted += toSeconds(kPeriod);
-    }
+    note(toSeconds(now - first), out, conditions, verdict);
   }
   verdict.usable = cycles > 0 ? static_cast<double>(usable) / static_cast<double>(cycles) : 0.0;
   return verdict;

@@ -90,6 +90,18 @@ Side sideOf(const Setup& setup, const Results& results, std::size_t station) {
   return side;
 }
 
+/// Of all flights of all paths; none where no path was planned.
+std::optional<double> shareBegun(const Side& side) {
+  std::int64_t begun = 0;
+  std::int64_t tried = 0;
+  for (const TruthPath& path : side.all) {
+    begun += path.flights();
+    tried = std::accumulate(path.ends.begin(), path.ends.end(), tried);
+  }
+  if (tried == 0) return {};
+  return static_cast<double>(begun) / static_cast<double>(tried);
+}
+
 Sheet pathsSheet(const std::array<Side, 2>& sides) {
   Sheet sheet{"paths",
               {"<station", "room", "<planner", "states", "risk index", "additive", "flights",
@@ -222,7 +234,14 @@ Findings judge(const Setup& setup, const Results& results) {
   const std::string significant =
       " plus 1.645 standard errors of the difference over the paths: above it the index is "
       "significantly worse.";
+  constexpr Band kMost{.min = 0.9, .max = 1.0};
   Findings findings;
+  findings.rows.push_back({.figure = "share of the flights that began",
+                           .as_published = shareBegun(sides[0]),
+                           .tautline = shareBegun(sides[1]),
+                           .as_published_band = kMost,
+                           .tautline_band = kMost,
+                           .note = "The others, whose mission was refused, count nowhere."});
   findings.rows.push_back(rowOf("Brier score of the risk index", scores(kIndex, kAdditive),
                                 "The band ends at the score of the additive measure, read as a "
                                 "probability by the union bound," +

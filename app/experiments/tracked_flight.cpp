@@ -31,9 +31,8 @@ TrackedFlight flyTracked(const bench::LockstepConfig& config, const MissionPlan&
     if (b.now() < next) return;
     next += kSample;
     flight.track.push_back({toSeconds(b.now() - *began), b.truth().p_WD, out.estimate.p_WD,
-                            out.mission.waypoint, out.anchor.contact_count, b.truth().tension,
-                            b.truth().length, b.truth().contact_count, b.truth().p_WA,
-                            out.anchor.p_WA});
+                            out.mission.waypoint, out.anchor.contact_count, b.truth().contact_count,
+                            b.truth().p_WA, out.anchor.p_WA});
   };
   flight.result = bench::flyMission(bench, mission, limit, follow);
   return flight;

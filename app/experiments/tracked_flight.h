@@ -21,8 +21,6 @@ struct TrackPoint {
   Eigen::Vector3d p_WD_estimate{Eigen::Vector3d::Zero()};  ///< The station's [m].
   int waypoint{0};                                         ///< Index of the target.
   int contacts{0};                                         ///< On the executor's stack.
-  double tension{0.0};                                     ///< True, at the drone [N].
-  double length{0.0};                                      ///< True, of all tether that is out [m].
   int true_contacts{0};                                    ///< Where the tether really rests.
   Eigen::Vector3d p_WA{Eigen::Vector3d::Zero()};           ///< True last contact, or the reel [m].
   Eigen::Vector3d p_WA_planned{Eigen::Vector3d::Zero()};   ///< The executor's [m].
