@@ -25,4 +25,8 @@ std::optional<double> LeanTension::tension() const noexcept {
   return forces.ok ? forces.T : 0.0;
 }
 
+double LeanTension::tensionError(double tension, double error) const noexcept {
+  return error / std::abs(leanModel(tension, theta_, G_).dbeta_dT);
+}
+
 }  // namespace tautline

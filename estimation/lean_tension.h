@@ -32,6 +32,10 @@ class LeanTension {
   /// no attitude yet.
   [[nodiscard]] std::optional<double> tension() const noexcept;
 
+  /// By how much `tension` [N] is wrong where the lean is wrong by `error` [rad]: the slope of
+  /// (12). Grows without bound towards the pole.
+  [[nodiscard]] double tensionError(double tension, double error) const noexcept;
+
  private:
   double time_constant_;
   double least_angle_;

@@ -128,6 +128,8 @@ void ConditionMonitor::watchTether(const MonitorInput& in) noexcept {
   t.phi = e.phi;
   t.lean_angle = lean_.angle();
   if ((*in.health)[SensorStream::kAttitude].ok()) t.T_lean = lean_.tension();
+  if (t.T_lean)
+    t.T_lean_error = lean_.tensionError(*t.T_lean, config_.detect.tether.lean_error_rad);
   if (reel.ok()) t.T_reel = f.reel.value.tension;
   t.w = config_.localizer.tether_weight_n_per_m;
   if (in.last_command->engaged) {

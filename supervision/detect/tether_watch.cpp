@@ -35,27 +35,29 @@ void TetherWatch::update(Time now, const TetherWatchInput& in, Findings& out) no
 
   // The reel's own sensor carried to the drone, eq. (11), or else the drone's lean, eq. (4).
   std::optional<double> T = in.T_lean;
+  std::optional<double> T_most = in.T_lean;
+  if (T_most) *T_most += in.T_lean_error;
   if (in.T_reel) {
     const ReelTension carried = tensionFromReel(*in.T_reel, in.L_free, in.theta, in.w);
-    T = carried.ok ? carried.T_D : *in.T_reel;
+    T = T_most = carried.ok ? carried.T_D : *in.T_reel;
   }
   const double hardest = std::max(in.T_reel.value_or(0.0), in.T_lean.value_or(0.0));
   out.report(Condition::kOverTension, settled && hardest > config_.max_tension_n, hardest,
              config_.max_tension_n);
   watchSnag(dt, in, T, out);
   if (settled) {
-    watchSlack(in, T, out);
+    watchSlack(in, T_most, out);
     watchBreak(now, in, T, out);
   }
   before_ = in;
 }
 
 /// (D1)
-void TetherWatch::watchSlack(const TetherWatchInput& in, std::optional<double> T,
+void TetherWatch::watchSlack(const TetherWatchInput& in, std::optional<double> T_most,
                              Findings& out) const noexcept {
-  if (!T) return;
+  if (!T_most) return;
   const CatenarySolution hangs = solveCatenary(
-      {.L = in.L_free, .theta_D = in.theta, .T_D = std::max(*T, kLeastTension), .w = in.w});
+      {.L = in.L_free, .theta_D = in.theta, .T_D = std::max(*T_most, kLeastTension), .w = in.w});
   if (!hangs.ok) return;
   out.reportAbove(Condition::kTetherSlack, in.L_free - hangs.chord,
                   config_.slack_excess_m + config_.slack_fraction * in.L_free);

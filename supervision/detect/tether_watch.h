@@ -29,6 +29,7 @@ struct TetherWatchConfig {
   double settle_s{5.0};
   double elevation_high_rad{1.396};
   double least_lean_angle_rad{0.17};
+  double lean_error_rad{0.01};
   double lean_time_s{1.0};
 
   template <class Visitor>
@@ -55,6 +56,8 @@ struct TetherWatchConfig {
             "elevation that the Jacobian law cannot fly");
     v.field("least_lean_angle_rad", least_lean_angle_rad, Range{0.01, 1.5},
             "between thrust and tether; below it the lean tells no tension");
+    v.field("lean_error_rad", lean_error_rad, Range{0, 0.5},
+            "of attitude and drag: slack is only what no lean within it explains");
     v.field("lean_time_s", lean_time_s, Range{0.01, 60}, "low pass of the lean");
   }
 };
@@ -69,6 +72,7 @@ struct TetherWatchInput {
   double lean_angle{1.5708};       ///< Thrust to tether, beta - theta [rad].
   std::optional<double> T_lean{};  ///< At the drone, from its lean [N]; 0: no pull. Absent: not
                                    ///< observable.
+  double T_lean_error{0.0};        ///< It may be off by this much [N].
   std::optional<double> T_reel{};  ///< Of the reel's own sensor [N].
   double w{0.06};                  ///< Weight per length [N/m].
   double length_rate{0.0};         ///< Commanded [m/s], as are the following.
@@ -87,7 +91,7 @@ class TetherWatch {
  private:
   using Motion = Eigen::Vector3d;  ///< Along the tether, up and across it [m].
 
-  void watchSlack(const TetherWatchInput& in, std::optional<double> T,
+  void watchSlack(const TetherWatchInput& in, std::optional<double> T_most,
                   Findings& out) const noexcept;
   void watchSnag(double dt, const TetherWatchInput& in, std::optional<double> T,
                  Findings& out) noexcept;

@@ -70,6 +70,15 @@ TEST(TetherWatch, NoPullIsSlackAndGoesWhenItPullsAgain) {
   EXPECT_FALSE(t.run(1.0, C::kTetherSlack));
 }
 
+TEST(TetherWatch, APullThatMayWellBeThereIsNoSlackTether) {
+  Tether t;
+  t.in.T_lean = 0.03;
+  t.in.T_lean_error = 0.47;
+  EXPECT_FALSE(t.run(8.0, C::kTetherSlack));
+  t.in.T_lean_error = 0.0;
+  EXPECT_TRUE(t.run(kDt, C::kTetherSlack));
+}
+
 TEST(TetherWatch, ALeanThatTellsNothingIsNoSlackTether) {
   Tether t;
   t.in.T_lean.reset();
