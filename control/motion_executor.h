@@ -174,6 +174,12 @@ class MotionExecutor {
 
   [[nodiscard]] const ExecutorStatus& status() const noexcept { return status_; }
 
+  /// Where it holds, and what it looks at there: a route that is completed holds at its last point,
+  /// not where it came near enough to it. Means nothing while running or idle.
+  [[nodiscard]] PointTarget holdPoint() const noexcept {
+    return {.p_WD = p_WHold_, .speed = speed(), .p_WL = leg_.p_WL};
+  }
+
  private:
   bool begin(const Route& route, const Estimate& estimate) noexcept;
   void beginLeg(int index, Eigen::Vector3d p_WS) noexcept;

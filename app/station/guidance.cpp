@@ -86,6 +86,9 @@ void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
 }
 
 void Guidance::enter(const GuidanceInput& in) noexcept {
+  viewpoint_.reset();
+  if (in.mode == Mode::kHold && conditions().has(Condition::kMissionDone))
+    viewpoint_ = executor_.holdPoint();
   mode_ = in.mode;
   under_way_ = false;
   last_action_.reset();
@@ -156,7 +159,8 @@ void Guidance::fly(const GuidanceInput& in) noexcept {
         under_way_ = goBack(kAllTheWay, in.estimate);
         break;
       default:
-        under_way_ = goTo(in.estimate.p_WD, config_.travel_speed_mps, in.estimate);
+        under_way_ = viewpoint_ ? executor_.goTo(*viewpoint_, in.estimate)
+                                : goTo(in.estimate.p_WD, config_.travel_speed_mps, in.estimate);
     }
   }
 }

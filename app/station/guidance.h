@@ -100,8 +100,9 @@ class Guidance {
   MotionExecutor executor_;
   ExecutorStatus mission_;
   Mode mode_{Mode::kStandby};
-  bool under_way_{false};    ///< The mode's route has been started.
-  bool has_flown_{false};    ///< Since arming.
+  bool under_way_{false};                 ///< The mode's route has been started.
+  std::optional<PointTarget> viewpoint_;  ///< In HOLD: the last one of the mission just completed.
+  bool has_flown_{false};                 ///< Since arming.
   int grounded_samples_{0};  ///< Vehicle status samples in a row that say that it stands.
   Time not_flying_since_{};  ///< The vehicle has said nothing of flying.
   bool stands_{false};       ///< On the ground, motors off, as far as can be told.

@@ -35,7 +35,7 @@ class GuidanceTest : public ::testing::Test {
                                   .estimate = plant_.measure(),
                                   .vehicle = phase_,
                                   .sensors = &sensors_,
-                                  .plan = nullptr,
+                                  .plan = plan_.get(),
                                   .conditions = conditions_,
                                   .teleop = sticks_});
       entered_ = false;
@@ -78,6 +78,7 @@ class GuidanceTest : public ::testing::Test {
   VehiclePhase phase_{VehiclePhase::kIdle};
   ConditionSet conditions_;
   std::optional<TeleopRates> sticks_;
+  std::unique_ptr<MissionPlan> plan_;
   Time now_{};
 };
 
@@ -106,6 +107,33 @@ TEST_F(GuidanceTest, TeleopIsTheSticksAndWithoutThemAHover) {
   sticks_.reset();
   step(std::chrono::seconds(10));
   EXPECT_LT((plant_.position() - nearer).norm(), 0.2) << "where the last sticks ended, not before";
+}
+
+TEST_F(GuidanceTest, AMissionEndsAtItsLastViewpointAndGoesOnLooking) {
+  config_.executor.acceptance_floor_m = 0.4;
+  plan_ = std::make_unique<MissionPlan>();
+  plan_->waypoint_count = 1;
+  plan_->waypoints[0].p_WD = aboveHome() + Eigen::Vector3d(0.5, 0.4, 0.8);
+  plan_->waypoints[0].p_WL = Eigen::Vector3d(3.0, 0.0, 3.0);
+  takeOff();
+  enter(Mode::kAuto);
+  for (int i = 0; i < 60 && !guidance_.conditions().has(Condition::kMissionDone); ++i)
+    step(std::chrono::milliseconds(500));
+  ASSERT_TRUE(guidance_.conditions().has(Condition::kMissionDone));
+  EXPECT_GT((plant_.position() - plan_->waypoints[0].p_WD).norm(), 0.2) << "near enough";
+  enter(Mode::kHold);
+  sensors_.attitude.valid = true;
+  step(std::chrono::seconds(10));
+  EXPECT_LT((plant_.position() - plan_->waypoints[0].p_WD).norm(), 0.15);
+  EXPECT_NE(output_.route.yaw_rate, 0.0);
+  enter(Mode::kTeleop);
+  sticks_ = TeleopRates{.length = -0.1};
+  step(std::chrono::seconds(8));
+  sticks_.reset();
+  const Eigen::Vector3d there = plant_.position();
+  enter(Mode::kHold);
+  step(std::chrono::seconds(10));
+  EXPECT_LT((plant_.position() - there).norm(), 0.2) << "a later hover is where the drone is";
 }
 
 TEST_F(GuidanceTest, ReturnsTheWayTheSticksFlew) {
