@@ -186,6 +186,13 @@ struct SensorFrame {
   LinkStatus link;
 };
 
+/// The vehicle says that it is in the air, on its way down included.
+[[nodiscard]] inline bool isFlying(const SensorFrame& frame) noexcept {
+  const VehiclePhase phase = frame.vehicle.value.phase;
+  return frame.vehicle.sequence > 0 &&
+         (phase == VehiclePhase::kFlying || phase == VehiclePhase::kLanding);
+}
+
 /// What the operator's sticks ask for: rates of the vehicle's own set-points, relative to the
 /// active anchor, as in VehicleCommand.
 struct TeleopRates {

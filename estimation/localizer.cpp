@@ -125,10 +125,14 @@ std::optional<Localizer::NewSample> Localizer::take(Stream& stream, SensorStream
 
 void Localizer::useSamples(Time now, const SensorFrame& frame) noexcept {
   const LocalizerNoiseConfig& noise = config_.noise;
+  // Readings that contradict one another are not used: noise that the gate lets through by chance
+  // would teach scale and biases.
   const auto reel = take(reel_, SensorStream::kReel, now, frame.reel,
-                         isPlausible(frame.reel.value, config_.sensors.max_length_m));
+                         isPlausible(frame.reel.value, config_.sensors.max_length_m) &&
+                             !sensor_health_[SensorStream::kReel].jumped());
   const auto angles =
-      take(angles_, SensorStream::kAngles, now, frame.angles, isPlausible(frame.angles.value));
+      take(angles_, SensorStream::kAngles, now, frame.angles,
+           isPlausible(frame.angles.value) && !sensor_health_[SensorStream::kAngles].jumped());
   const auto attitude = take(attitude_, SensorStream::kAttitude, now, frame.attitude,
                              isPlausible(frame.attitude.value));
   const bool parked = frame.vehicle.valid && frame.vehicle.value.phase == VehiclePhase::kIdle;

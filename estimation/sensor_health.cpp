@@ -4,6 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Geometry>
+
+#include "common/tether_geometry.h"
+
 namespace tautline {
 namespace {
 
@@ -48,19 +52,23 @@ SensorMonitor::SensorMonitor(const SensorHealthConfig& config) noexcept : config
 void SensorMonitor::reset() noexcept {
   streams_.fill(Stream{.period = config_.initial_period_s});
   length_ = theta_ = phi_ = Motion{};
+  last_length_.reset();
+  last_direction_.reset();
   last_update_.reset();
   health_ = {};
 }
 
 template <class T>
-void SensorMonitor::check(SensorStream stream, Time now, const Sample<T>& sample,
-                          bool plausible) noexcept {
+std::optional<double> SensorMonitor::check(SensorStream stream, Time now, const Sample<T>& sample,
+                                           bool plausible) noexcept {
   Stream& s = streams_[static_cast<std::size_t>(stream)];
   StreamHealth& health = health_.streams[static_cast<std::size_t>(stream)];
+  std::optional<double> since;
   if (sample.sequence != s.sequence) {
     s.sequence = sample.sequence;
     s.last_bad = !sample.valid || !plausible;
     if (!s.last_bad) {
+      since = s.seen ? std::max(0.0, toSeconds(sample.time - s.time)) : 0.0;
       if (s.seen && sample.time > s.time) {
         // An outage must not teach a longer period than the stream has: grow slowly.
         const double interval = std::min(toSeconds(sample.time - s.time), 2.0 * s.period);
@@ -79,6 +87,34 @@ void SensorMonitor::check(SensorStream stream, Time now, const Sample<T>& sample
   if (!s.seen) health.faults |= bit(SensorFault::kMissing);
   if (s.seen && health.age > health.stale_after) health.faults |= bit(SensorFault::kStale);
   if (s.last_bad) health.faults |= bit(SensorFault::kRange);
+  return since;
+}
+
+void SensorMonitor::watchSteps(const SensorFrame& frame, std::optional<double> since_reel,
+                               std::optional<double> since_angles) noexcept {
+  const JumpConfig& jump = config_.jump;
+  if (since_reel) {
+    StreamHealth& reel = health_.streams[static_cast<std::size_t>(SensorStream::kReel)];
+    const double length = frame.reel.value.length;
+    reel.step = std::abs(length - last_length_.value_or(length));
+    reel.step_allowed =
+        jump.length_noise_m + jump.length_rate_mps * (*since_reel + jump.time_jitter_s);
+    last_length_ = length;
+  }
+  StreamHealth& angles = health_.streams[static_cast<std::size_t>(SensorStream::kAngles)];
+  // A parked tether lies slack and its end may point anywhere.
+  if (!isFlying(frame)) {
+    last_direction_.reset();
+    angles.step = 0.0;
+  } else if (since_angles) {
+    const Eigen::Vector3d now =
+        toCartesian({1.0, frame.angles.value.theta, frame.angles.value.phi});
+    const Eigen::Vector3d before = last_direction_.value_or(now);
+    angles.step = std::atan2(before.cross(now).norm(), before.dot(now));
+    angles.step_allowed =
+        jump.angle_noise_rad + jump.angle_rate_radps * (*since_angles + jump.time_jitter_s);
+    last_direction_ = now;
+  }
 }
 
 bool SensorMonitor::isStuck(Motion& motion, double reading, double commanded_step,
@@ -90,10 +126,14 @@ bool SensorMonitor::isStuck(Motion& motion, double reading, double commanded_ste
 
 const SensorHealth& SensorMonitor::update(Time now, const SensorFrame& frame,
                                           const VehicleCommand& command) noexcept {
-  check(SensorStream::kReel, now, frame.reel, isPlausible(frame.reel.value, config_.max_length_m));
-  check(SensorStream::kAngles, now, frame.angles, isPlausible(frame.angles.value));
-  check(SensorStream::kAttitude, now, frame.attitude, isPlausible(frame.attitude.value));
-  check(SensorStream::kVehicle, now, frame.vehicle, true);
+  const auto since_reel = check(SensorStream::kReel, now, frame.reel,
+                                isPlausible(frame.reel.value, config_.max_length_m));
+  const auto since_angles =
+      check(SensorStream::kAngles, now, frame.angles, isPlausible(frame.angles.value));
+  static_cast<void>(
+      check(SensorStream::kAttitude, now, frame.attitude, isPlausible(frame.attitude.value)));
+  static_cast<void>(check(SensorStream::kVehicle, now, frame.vehicle, true));
+  watchSteps(frame, since_reel, since_angles);
 
   const double dt = last_update_ && now > *last_update_ ? toSeconds(now - *last_update_) : 0.0;
   last_update_ = now;

@@ -1,13 +1,15 @@
 #pragma once
 
 /// @file
-/// Which samples may be trusted this cycle: age, range and stuck checks as condition bits.
+/// Which samples may be trusted this cycle: age, range, stuck and jump checks.
 /// Thresholds on age are multiples of each stream's own period, which is learned from its samples:
 /// the same config serves 1 Hz and 100 Hz telemetry.
 
 #include <array>
 #include <cstdint>
 #include <optional>
+
+#include <Eigen/Core>
 
 #include "common/fields.h"
 #include "common/time.h"
@@ -38,6 +40,26 @@ inline constexpr std::array<EnumName<SensorFault>, 4> kSensorFaultNames{
      {SensorFault::kRange, "range"},
      {SensorFault::kStuck, "stuck"}}};
 
+/// Readings that moved farther between two good samples than reel or vehicle can.
+struct JumpConfig {
+  double length_rate_mps{2.0};
+  double length_noise_m{0.05};
+  double angle_rate_radps{2.0};
+  double angle_noise_rad{0.08};
+  double time_jitter_s{0.1};
+
+  template <class Visitor>
+  void fields(Visitor& v) {
+    v.field("length_rate_mps", length_rate_mps, Range{0.01, 100},
+            "no reel moves faster, slipping included");
+    v.field("length_noise_m", length_noise_m, Range{0, 10}, "a step that is only noise");
+    v.field("angle_rate_radps", angle_rate_radps, Range{0.01, 100},
+            "the tether's direction at the drone turns no faster");
+    v.field("angle_noise_rad", angle_noise_rad, Range{0, 3}, "a step that is only noise");
+    v.field("time_jitter_s", time_jitter_s, Range{0, 10}, "error of the time between two samples");
+  }
+};
+
 struct SensorHealthConfig {
   double initial_period_s{1.0};  ///< Assumed until a stream's own period is known.
   double stale_periods{3.0};     ///< A sample older than this many of its own periods is stale, ...
@@ -46,6 +68,7 @@ struct SensorHealthConfig {
   double max_length_m{200.0};    ///< Total tether length beyond this is out of range.
   double stuck_length_m{0.3};    ///< Commanded motion without any change that makes the reel stuck.
   double stuck_angle_rad{0.15};  ///< The same for the tether angles.
+  JumpConfig jump;
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -61,6 +84,7 @@ struct SensorHealthConfig {
             "commanded length change without a reading that follows");
     v.field("stuck_angle_rad", stuck_angle_rad, Range{0.01, 3},
             "commanded angle change without a reading that follows");
+    v.section("jump", jump);
   }
 };
 
@@ -70,11 +94,18 @@ struct StreamHealth {
   double age{0.0};          ///< Of the last good sample [s].
   double period{0.0};       ///< Learned [s].
   double stale_after{0.0};  ///< Age at which it is stale [s].
+  /// From the good sample before the last one to the last one, and what reel or vehicle can have
+  /// moved meanwhile; reel [m], and in flight angles [rad] as the angle between two directions, so
+  /// the pole is no jump.
+  double step{0.0};
+  double step_allowed{0.0};
 
   [[nodiscard]] bool has(SensorFault fault) const noexcept {
     return (faults & static_cast<std::uint8_t>(fault)) != 0;
   }
   [[nodiscard]] bool ok() const noexcept { return faults == 0; }
+  /// From a sample that jumped until the next good one that did not: neither may be what it says.
+  [[nodiscard]] bool jumped() const noexcept { return step > step_allowed; }
 };
 
 struct SensorHealth {
@@ -119,13 +150,19 @@ class SensorMonitor {
     double commanded{0.0};
   };
 
+  /// Returns the time since the good sample before if there is a new one [s].
   template <class T>
-  void check(SensorStream stream, Time now, const Sample<T>& sample, bool plausible) noexcept;
+  std::optional<double> check(SensorStream stream, Time now, const Sample<T>& sample,
+                              bool plausible) noexcept;
+  void watchSteps(const SensorFrame& frame, std::optional<double> since_reel,
+                  std::optional<double> since_angles) noexcept;
   static bool isStuck(Motion& motion, double reading, double commanded_step, double limit) noexcept;
 
   SensorHealthConfig config_;
   std::array<Stream, kSensorStreamCount> streams_{};
   Motion length_, theta_, phi_;
+  std::optional<double> last_length_;                ///< Of the last good sample [m].
+  std::optional<Eigen::Vector3d> last_direction_{};  ///< Of the last good one in flight.
   std::optional<Time> last_update_;
   SensorHealth health_;
 };

@@ -9,12 +9,6 @@ namespace {
 
 using C = Condition;
 
-bool isFlying(const SensorFrame& f) noexcept {
-  const VehiclePhase phase = f.vehicle.value.phase;
-  return f.vehicle.sequence > 0 &&
-         (phase == VehiclePhase::kFlying || phase == VehiclePhase::kLanding);
-}
-
 /// A stream's newest sample may be used.
 template <class T>
 bool isGood(const Sample<T>& sample, const StreamHealth& health) noexcept {
@@ -38,7 +32,6 @@ bool isUnflyable(const CoreConfig& config) {
 
 ConditionMonitor::ConditionMonitor(const CoreConfig& config)
     : config_(config),
-      jump_(config.detect.jump),
       lean_(config.detect.tether.lean_time_s, config.detect.tether.least_lean_angle_rad,
             config.localizer.vehicle_weight_n),
       tether_(config.detect.tether),
@@ -93,17 +86,11 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
   findings_.report(C::kReelStuck, reel.has(SensorFault::kStuck));
   findings_.report(C::kAnglesStuck, angles.has(SensorFault::kStuck));
 
+  findings_.reportAbove(C::kReelJump, reel.step, reel.step_allowed);
+  findings_.reportAbove(C::kAnglesJump, angles.step, angles.step_allowed);
+
   const SensorFrame& f = *in.sensors;
-  SampledLength length;
-  if (isGood(f.reel, reel)) {
-    L_total_ = f.reel.value.length;
-    length = {f.reel.sequence, f.reel.time, L_total_};
-  }
-  // A parked tether lies slack and its end may point anywhere.
-  SampledAngles direction;
-  if (isFlying(f) && isGood(f.angles, angles))
-    direction = {f.angles.sequence, f.angles.time, f.angles.value.theta, f.angles.value.phi};
-  jump_.update(length, direction, findings_);
+  if (isGood(f.reel, reel)) L_total_ = f.reel.value.length;
 
   const bool parked = !isIn(in.mode, kFlyingModes) && f.vehicle.value.phase == VehiclePhase::kIdle;
   std::optional<double> L_total, phi;

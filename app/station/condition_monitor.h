@@ -51,7 +51,6 @@ class ConditionMonitor {
   void watchVehicle(const MonitorInput& in) noexcept;
 
   const CoreConfig& config_;
-  JumpDetector jump_;
   LeanTension lean_;
   TetherWatch tether_;
   ContactWatch contact_;

@@ -7,10 +7,10 @@
 namespace tautline {
 namespace {
 
-constexpr double kBelowGround =
-    0.3;  // [m] the descent aims this far below home, so that it ends on the ground
-constexpr double kGroundHeight = 0.3;  // [m] no lower for a while and below this: on the ground
-constexpr Duration kNoLowerFor = std::chrono::seconds(2);
+// The descent aims so far below home that it ends on the ground, whatever the estimate is off by
+// [m].
+constexpr double kBelowGround = 0.8;
+constexpr Duration kNoLowerFor = std::chrono::seconds(1);
 constexpr int kGroundedSamples = 2;
 constexpr Duration kStandsForSure = std::chrono::seconds(10);  // whatever the estimate says
 constexpr double kSmallestDescent = 0.01;                      // [m]
@@ -77,8 +77,8 @@ void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
   if (!stands || in.entered) grounded_samples_ = 0;
   if (stands && in.sensors->vehicle.sequence != vehicle_sequence_) ++grounded_samples_;
   if (flies || in.entered) not_flying_since_ = in.now;
-  const bool in_the_air =
-      in.estimate.usable() && in.estimate.p_WD.y() - config_.home_position_m.y() > kGroundHeight;
+  const double height = in.estimate.p_WD.y() - config_.home_position_m.y();
+  const bool in_the_air = in.estimate.usable() && height > config_.touchdown_height_m;
   const bool for_long = in.now - not_flying_since_ > kStandsForSure;
   stands_ = grounded_samples_ >= kGroundedSamples && (!in_the_air || for_long);
   gave_up_ = in.vehicle == VehiclePhase::kFault && !in_the_air && for_long;
@@ -212,6 +212,8 @@ void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcep
   command.elevation_rate = rates.elevation_rate;
 }
 
+/// By what no estimate can be wrong about: told to go lower it does not. A height alone would stop
+/// the motors in the air where the estimate is too low.
 bool Guidance::onGround(const GuidanceInput& in) noexcept {
   const double height = in.estimate.p_WD.y() - config_.home_position_m.y();
   // One that stands still comes no lower either.
@@ -219,8 +221,7 @@ bool Guidance::onGround(const GuidanceInput& in) noexcept {
     lowest_ = height;
     lowest_since_ = in.now;
   }
-  return height < config_.touchdown_height_m ||
-         (height < kGroundHeight && in.now - lowest_since_ > kNoLowerFor);
+  return height < config_.touchdown_height_m && in.now - lowest_since_ > kNoLowerFor;
 }
 
 bool Guidance::goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& estimate) noexcept {

@@ -41,7 +41,7 @@ struct GuidanceConfig {
   double approach_height_m{0.5};
   double travel_speed_mps{0.3};
   double descent_speed_mps{0.15};
-  double touchdown_height_m{0.06};
+  double touchdown_height_m{0.3};
   double action_period_s{1.0};
   double back_up_m{1.0};
   double slack_reel_in_mps{0.05};
@@ -61,7 +61,7 @@ struct GuidanceConfig {
             "speed to the hover point and back home");
     v.field("descent_speed_mps", descent_speed_mps, Range{0.01, 2}, "speed of the last descent");
     v.field("touchdown_height_m", touchdown_height_m, Range{0.0, 1},
-            "motors stop below this height above home");
+            "on the ground: below this height above home and no lower for a second");
     v.field("action_period_s", action_period_s, Range{0.1, 10},
             "take-off and motor stop are repeated this often");
     v.field("back_up_m", back_up_m, Range{0.1, 100}, "way back along the flown path in BACKUP");

@@ -1,12 +1,15 @@
 #include "estimation/sensor_health.h"
 
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 namespace tautline {
 namespace {
 
+constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Streams at one rate, seen by a 100 Hz loop.
@@ -122,6 +125,35 @@ TEST(SensorHealth, AReadingThatDoesNotFollowItsCommandIsStuck) {
   bench.command().azimuth_rate = -0.1;
   EXPECT_TRUE(bench.run(2.0)[SensorStream::kAngles].has(SensorFault::kStuck));
   EXPECT_FALSE(bench.run(0.1)[SensorStream::kReel].has(SensorFault::kStuck));
+}
+
+TEST(SensorHealth, FindsStepsThatNothingCanMake) {
+  SensorMonitor monitor{SensorHealthConfig{}};
+  SensorFrame frame;
+  frame.vehicle = {.value = {.phase = VehiclePhase::kFlying}, .sequence = 1, .valid = true};
+  Time now{};
+  const auto sample = [&](double length, double theta, double phi, double period) {
+    now += fromSeconds(period);
+    frame.reel.value.length = length;
+    frame.angles.value = {.theta = theta, .phi = phi};
+    frame.reel.time = frame.angles.time = now;
+    frame.reel.valid = frame.angles.valid = true;
+    ++frame.reel.sequence;
+    ++frame.angles.sequence;
+    const SensorHealth& health = monitor.update(now, frame, {});
+    return std::pair(health[SensorStream::kReel].jumped(), health[SensorStream::kAngles].jumped());
+  };
+  const std::pair none{false, false};
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(sample(1.0 + 0.06 * i, 0.02 * i, 0.02 * i, 0.1), none);
+  const double L = 1.0 + 0.06 * 49;
+  EXPECT_EQ(sample(L + 0.6, 0.98, 0.98, 0.1), std::pair(true, false));
+  EXPECT_EQ(sample(L + 0.6, 0.98, 1.98, 0.1), std::pair(false, true));
+  EXPECT_EQ(sample(L + 0.6, 0.98, 1.98, 0.1), none) << "it is over with the next sample";
+  EXPECT_EQ(sample(L + 2.0, 0.98, 1.98, 2.0), none) << "an outage gives time to move";
+  sample(L + 2.0, 1.5, 0.0, 2.0);
+  EXPECT_EQ(sample(L + 2.0, 1.5, kPi, 0.1), none) << "at the pole azimuth may turn round";
+  frame.vehicle.value.phase = VehiclePhase::kIdle;
+  EXPECT_EQ(sample(L + 2.0, -1.0, 0.0, 0.1), none) << "a parked tether lies slack";
 }
 
 TEST(SensorHealth, HoldingStillIsNotStuck) {

@@ -5,7 +5,6 @@
 
 #include "supervision/detect/contact_watch.h"
 #include "supervision/detect/host_watch.h"
-#include "supervision/detect/jump_detector.h"
 #include "supervision/detect/link_watch.h"
 #include "supervision/detect/oscillation_watch.h"
 #include "supervision/detect/parked_check.h"
@@ -16,7 +15,6 @@
 namespace tautline {
 
 struct DetectConfig {
-  JumpConfig jump;
   TetherWatchConfig tether;
   ContactWatchConfig contact;
   OscillationConfig oscillation;
@@ -29,7 +27,6 @@ struct DetectConfig {
 
   template <class Visitor>
   void fields(Visitor& v) {
-    v.section("jump", jump);
     v.section("tether", tether);
     v.section("contact", contact);
     v.section("oscillation", oscillation);

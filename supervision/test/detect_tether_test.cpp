@@ -166,27 +166,6 @@ TEST(TetherWatch, TheReelEndsBeforeItsLastMetre) {
   EXPECT_TRUE(t.run(kDt, C::kReelLimit)) << "on the ground too";
 }
 
-TEST(JumpDetector, FindsStepsThatNothingCanMake) {
-  JumpDetector detector{JumpConfig{}};
-  std::uint32_t sequence = 0;
-  Time now{};
-  const auto sample = [&](double length, double theta, double phi, double period) {
-    now += fromSeconds(period);
-    ++sequence;
-    Findings out;
-    detector.update({sequence, now, length}, {sequence, now, theta, phi}, out);
-    return out.raised;
-  };
-  for (int i = 0; i < 50; ++i) EXPECT_TRUE(sample(1.0 + 0.06 * i, 0.02 * i, 0.02 * i, 0.1).empty());
-  const double L = 1.0 + 0.06 * 49;
-  EXPECT_EQ(sample(L + 0.6, 0.98, 0.98, 0.1), ConditionSet{C::kReelJump});
-  EXPECT_EQ(sample(L + 0.6, 0.98, 1.98, 0.1), ConditionSet{C::kAnglesJump});
-  EXPECT_TRUE(sample(L + 0.6, 0.98, 1.98, 0.1).empty()) << "it is over with the next sample";
-  EXPECT_TRUE(sample(L + 2.0, 0.98, 1.98, 2.0).empty()) << "an outage gives time to move";
-  sample(L + 2.0, 1.5, 0.0, 2.0);
-  EXPECT_TRUE(sample(L + 2.0, 1.5, kPi, 0.1).empty()) << "at the pole azimuth may turn round";
-}
-
 struct Oscillation {
   OscillationWatch watch{OscillationConfig{}};
   Time now{};
