@@ -48,6 +48,7 @@ std::string toJson(const CaseResult& r) {
                         {"faulted", r.faulted},
                         {"flight_s", r.flight_s},
                         {"wall_s", r.wall_s},
+                        {"flights", r.flights},
                         {"height_max_m", r.height_max_m}}
       .dump();
 }
@@ -65,6 +66,7 @@ CaseResult caseFromJson(const std::string& line) {
     r.faulted = j.at("faulted");
     r.flight_s = j.at("flight_s");
     r.wall_s = j.at("wall_s");
+    r.flights = j.value("flights", 1);
     r.height_max_m = j.at("height_max_m");
   } catch (const nlohmann::json::exception&) {
     throw InputError({.problem = "\"" + line.substr(0, 60) + "\" is no result of a case"},

@@ -19,6 +19,7 @@ struct CaseResult {
   bool faulted{false};   ///< The first fault has begun: the flight got that far.
   double flight_s{0.0};  ///< The rig's time.
   double wall_s{0.0};
+  int flights{1};            ///< Until there was one that counts.
   double height_max_m{0.0};  ///< Over the floor.
 
   [[nodiscard]] bool passed() const noexcept { return failure.empty() && skipped.empty(); }

@@ -34,6 +34,9 @@ class HeardFlight {
   /// said once is forgotten.
   void goOn() noexcept;
 
+  /// The station says nothing any more, so it commands nothing.
+  void fallSilent() noexcept { output_.command = {}; }
+
   /// Mode, conditions, events, answer, rates and estimate.
   [[nodiscard]] const StepOutput& output() const noexcept { return output_; }
   [[nodiscard]] const SensorFrame& sensors() const noexcept { return sensors_; }

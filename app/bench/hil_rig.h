@@ -23,7 +23,8 @@
 
 namespace tautline::bench {
 
-/// A new folder for temporary files, gone with its object.
+/// A new folder for temporary files, gone with its object: in $TMPDIR, or else in memory, as a
+/// black box on a busy disk makes the station wait.
 class TemporaryFolder {
  public:
   /// Throws InputError if there can be none.
@@ -60,10 +61,10 @@ class HilRig final : public Rig {
   [[nodiscard]] double floor() const noexcept override { return floor_; }
   [[nodiscard]] Duration allowance() const noexcept override;
 
-  /// Ends both programs; what they say of it that is no success, or that they could not keep up.
+  /// Ends both programs. What they had to say of it.
   struct End {
-    std::string failure;   ///< A program that did not end well.
-    std::string slowness;  ///< The simulator's word that it left time out.
+    std::string failure;   ///< One that did not end well; empty: both did.
+    std::string slowness;  ///< What the machine did not give them time for; empty: nothing.
   };
   [[nodiscard]] End end();
 
@@ -90,13 +91,16 @@ class HilRig final : public Rig {
   std::optional<ChildProgram> station_program_;
   Time start_{};  ///< Of the run, on the machine's clock.
   Time now_{};
+  Time last_cycle_{};         ///< The last one that was heard.
+  Duration longest_stall_{};  ///< Of the station, which nobody made.
   std::int64_t last_fault_utime_{0};
 };
 
 /// Why a flight cannot be flown so; empty: it can.
 [[nodiscard]] std::string whyOnlyInLockstep(const FlightCase& flight);
 
-/// runCase() on a HilRig; a program that dies is a failed case. `sink` as there.
+/// runCase() on a HilRig; a program that dies is a failed case. A flight that failed while the
+/// machine could not keep up says nothing: it is flown again, three times at most. `sink` as there.
 [[nodiscard]] CaseResult runCaseInHil(const FlightCase& flight, TelemetrySink* sink);
 
 }  // namespace tautline::bench

@@ -124,9 +124,10 @@ void show(const CaseResult& r, const std::string& file, const Options& o) {
     fmt::print("{}\n", failureLine(r, fmt::format("tautline-bench scenario {} --seed {}{}", file,
                                                   r.seed, o.hil ? " --hil" : "")));
   } else {
-    fmt::print("passed {} seed {}: {:.1f} s, ended in {}{}\n", r.name, r.seed, r.flight_s,
+    fmt::print("passed {} seed {}: {:.1f} s, ended in {}{}{}\n", r.name, r.seed, r.flight_s,
                nameOf(r.end, kModeNames),
-               r.crash == sim::CrashReason::kNone ? "" : fmt::format(", crash: {}", crash));
+               r.crash == sim::CrashReason::kNone ? "" : fmt::format(", crash: {}", crash),
+               r.flights == 1 ? "" : fmt::format(", in flight {}", r.flights));
   }
   std::fflush(stdout);
 }

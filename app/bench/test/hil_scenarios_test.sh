@@ -4,7 +4,7 @@
 set -uo pipefail
 bin=${TAUTLINE_BIN:?the folder of the programs}
 cd "${TAUTLINE_SOURCE_DIR:?the source folder}" || exit 1
-work=$(mktemp -d)
+work=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
 export TMPDIR=$work
 failed=0
 
