@@ -137,8 +137,9 @@ void HeardFlight::enter(Mode mode) noexcept {
   state_heard_ = true;
 }
 
+/// The audit of operators is told as events too, but is none of the core's output.
 void HeardFlight::add(const StationEvent& event) noexcept {
-  if (output_.event_count < std::ssize(output_.events))
+  if (!isAudit(event.code) && output_.event_count < std::ssize(output_.events))
     output_.events[static_cast<std::size_t>(output_.event_count++)] = event;
 }
 

@@ -70,7 +70,7 @@ TEST_F(FaultInboxTest, TheTimeCountsFromTheArrival) {
 
 TEST_F(FaultInboxTest, ACopyIsTakenOnce) {
   // Were each of them taken there would be no room for the last.
-  for (int i = 0; i < 2 * static_cast<int>(kMaxFaults); ++i) send(7, "encoder off 100");
+  for (int i = 0; i < static_cast<int>(kMaxFaults) + 4; ++i) send(7, "encoder off 100");
   send(8, "bus unplug 0");
   EXPECT_TRUE(soon([&] { return simulator_.unplugged(); }));
 }
