@@ -26,6 +26,7 @@ inline constexpr const char* kMissionChunk = "MISSION_CHUNK";
 inline constexpr const char* kCommandAck = "COMMAND_ACK";
 inline constexpr const char* kParams = "PARAMS";
 inline constexpr const char* kSimTruth = "SIM_TRUTH";
+inline constexpr const char* kSimFault = "SIM_FAULT";
 }  // namespace channel
 
 /// ttl=0 keeps the messages on this machine.

@@ -28,6 +28,10 @@ class ByteLink {
   /// There is a client, as of the last read().
   [[nodiscard]] virtual bool hasClient() const noexcept = 0;
 
+  /// Pulls the cable out of the client's port, or puts it back; the same again does nothing. Not
+  /// where the cable is not the simulator's.
+  virtual void plug(bool /*in*/) noexcept {}
+
   /// For people, e.g. "/dev/pts/3".
   [[nodiscard]] virtual std::string name() const = 0;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "common/toml/toml_writer.h"
 #include "drivers/fotokite_protocol.h"
 #include "drivers/tautline_protocol.h"
 
@@ -76,7 +77,7 @@ constexpr std::array kMenu{
     FaultKind{T::kBus, M::kDup, P::kBus, "messages come twice", "share of messages", 0.3, kShare},
     FaultKind{T::kBus, M::kReorder, P::kBus, "a message comes after the next of its kind", "share of messages", 0.3, kShare},
     FaultKind{T::kBus, M::kBusOff, P::kBus, "the devices neither send nor hear", "", 0, kNoValue},
-    FaultKind{T::kBus, M::kUnplug, P::kBench, "the cable is out of the station's port", "", 0, kNoValue},
+    FaultKind{T::kBus, M::kUnplug, P::kMachine, "the cable is out of the station's port", "", 0, kNoValue},
     FaultKind{T::kTether, M::kSnag, P::kMachine, "the tether is held at a point", "where, as share of the length from the reel", 0.0, {0.0, 0.95}},
     FaultKind{T::kTether, M::kBreak, P::kMachine, "the tether is cut, for good", "where, as share of the length from the reel", 1.0, {0.05, 1.0}},
     FaultKind{T::kTether, M::kContactSlip, P::kMachine, "contacts slide along their edges", "friction that is left", 0.0, {0, 1.5}},
@@ -281,6 +282,19 @@ Fault parseFault(const std::string& text) {
   return fault;
 }
 
+std::string faultText(const Fault& fault) {
+  const double lasting = fault.lasting < Fault::kForEver ? toSeconds(fault.lasting) : 0.0;
+  const std::string text =
+      describe(fault) + " " + tomlText(toSeconds(fault.at - Time{})) + " " + tomlText(lasting);
+  if (fault.mode == M::kGust) {
+    const Eigen::Vector3d& v = fault.velocity;
+    return text + " " + tomlText(v.x()) + "," + tomlText(v.y()) + "," + tomlText(v.z());
+  }
+  const FaultKind* kind = findFaultKind(fault.target, fault.mode);
+  const bool sized = kind != nullptr && kind->value[0] != '\0';
+  return sized ? text + " " + tomlText(fault.value) : text;
+}
+
 void checkFault(const Fault& fault, SimDevice device, bool on_bench) {
   if (fault.mode == M::kOk) return;
   const FaultKind* kind = findFaultKind(fault.target, fault.mode);
@@ -294,6 +308,10 @@ void checkFault(const Fault& fault, SimDevice device, bool on_bench) {
   if (kind->place == P::kBus && device == SimDevice::kFotokite)
     refuse(std::string("the device \"") + device_name + "\" has no such bus",
            "use device tautline-serial");
+  const bool own_cable = device == SimDevice::kFotokite || device == SimDevice::kTautlineSerial;
+  if (kind->mode == M::kUnplug && !own_cable)
+    refuse(std::string("the cable of the device \"") + device_name + "\" is not the simulator's",
+           "use device fotokite or tautline-serial");
   if (const auto codes = codesOf(fault.target); !codes.empty()) {
     const VehicleCode& c = codes[fault.code];
     if ((device == SimDevice::kFotokite ? c.fotokite : c.tautline) < 0)

@@ -117,7 +117,7 @@ inline constexpr std::array<EnumName<FaultMode>, 23> kFaultModeNames{
 enum class FaultPlace : std::uint8_t {
   kMachine,  ///< The simulated machine, whatever it is connected with.
   kBus,      ///< The simulated machine on the Tautline bus.
-  kBench,    ///< The lock-step bench, which is station, cable and operator as well.
+  kBench,    ///< The bench, which is operator as well and has the station in its hands.
   kNowhere,  ///< Nobody: the simulation has no such part.
 };
 inline constexpr std::array<EnumName<FaultPlace>, 4> kFaultPlaceNames{
@@ -172,6 +172,9 @@ struct Fault {
 /// "TARGET MODE AT_S [FOR_S [VALUE]]", times in seconds; a gust's value is X,Y,Z. FOR_S 0: for
 /// ever. Throws InputError (usage).
 [[nodiscard]] Fault parseFault(const std::string& text);
+
+/// What parseFault() reads back as the same fault.
+[[nodiscard]] std::string faultText(const Fault& fault);
 
 /// Throws InputError if the fault's value is out of its range, or if a machine with this device, or
 /// (`on_bench` false) without the bench around it, cannot have the fault.

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "lcmtypes/channels.h"
 #include "sim_hil/can_link.h"
 #include "sim_hil/fault_file.h"
+#include "sim_hil/fault_inbox.h"
 #include "sim_hil/fault_schedule.h"
 #include "sim_hil/pty_link.h"
 #include "sim_hil/real_time_server.h"
@@ -47,6 +49,7 @@ struct Options {
   std::string lcm_url{kDefaultLcmUrl};
   std::vector<std::string> faults;
   std::string scenario;
+  bool take_faults{false};
   bool no_lcm{false};
   bool check_config{false};
   bool print_config{false};
@@ -78,7 +81,10 @@ void addOptions(CLI::App& app, Options& o) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--scenario", o.scenario, "take the faults of this scenario file");
-  app.add_flag("--no-lcm", o.no_lcm, "send nothing over LCM");
+  CLI::Option* no_lcm = app.add_flag("--no-lcm", o.no_lcm, "send nothing over LCM");
+  app.add_flag("--take-faults", o.take_faults,
+               "also take faults over LCM while it runs (SIM_FAULT)")
+      ->excludes(no_lcm);
   app.add_flag("--check-config", o.check_config, "read scene and config, then stop");
   app.add_flag("--print-config", o.print_config,
                "print every key with its value and its meaning, then stop");
@@ -203,13 +209,15 @@ int run(const Options& o) {
   if (!publisher.warning().empty()) {
     std::fprintf(stderr, "tautline-sim: warning: %s\n", publisher.warning().c_str());
   }
+  std::optional<FaultInbox> inbox;
+  if (o.take_faults) inbox.emplace(o.lcm_url, config.device);
   std::printf("tautline-sim %s: serving %s on %s (%s), scene \"%s\", seed %llu; stop with Ctrl-C\n",
               TAUTLINE_VERSION, protocolOf(config.device), (o.pty + o.can + o.slcan).c_str(),
               link->name().c_str(), scene.name.c_str(), static_cast<unsigned long long>(o.seed));
   std::fflush(stdout);
 
-  const ServerSummary summary =
-      serve(simulator, *link, publisher, fromSeconds(o.duration_s), stop_requested);
+  const ServerSummary summary = serve(simulator, *link, publisher, inbox ? &*inbox : nullptr,
+                                      fromSeconds(o.duration_s), stop_requested);
   const Truth& truth = simulator.truth();
   std::printf("tautline-sim: stopped after %.1f s, %u client(s)%s%s", toSeconds(summary.served),
               summary.clients, truth.crashed ? ", crashed: " : "",

@@ -85,10 +85,28 @@ PtyLink::PtyLink(std::filesystem::path link) : link_(std::move(link)) {
   }
 }
 
-PtyLink::~PtyLink() {
+PtyLink::~PtyLink() { plug(false); }
+
+void PtyLink::plug(bool in) noexcept {
+  if (in == (master_ >= 0)) return;
   std::error_code error;
-  if (std::filesystem::read_symlink(link_, error) == slave_) std::filesystem::remove(link_, error);
-  ::close(master_);
+  if (!in) {
+    if (std::filesystem::read_symlink(link_, error) == slave_)
+      std::filesystem::remove(link_, error);
+    ::close(master_);
+    master_ = -1;
+    has_client_ = false;
+    return;
+  }
+  std::string slave;
+  const int master = openPty(slave);
+  if (master < 0) return;
+  if (pointLink(link_, slave)) {
+    ::close(master);
+    return;
+  }
+  master_ = master;
+  slave_ = slave;
 }
 
 std::size_t PtyLink::read(std::span<std::uint8_t> out) noexcept {
@@ -110,16 +128,13 @@ void PtyLink::replug() noexcept {
     ::close(fd);
     return;
   }
-  std::string slave;
-  const int master = openPty(slave);
-  if (master < 0) return;
-  if (pointLink(link_, slave)) {
-    ::close(master);
-    return;
+  const int old = std::exchange(master_, -1);
+  plug(true);
+  if (master_ < 0) {
+    master_ = old;
+  } else {
+    ::close(old);
   }
-  ::close(master_);
-  master_ = master;
-  slave_ = slave;
 }
 
 std::size_t PtyLink::write(std::span<const std::uint8_t> bytes) noexcept {

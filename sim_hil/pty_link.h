@@ -27,6 +27,7 @@ class PtyLink final : public ByteLink {
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept override;
   [[nodiscard]] std::size_t write(std::span<const std::uint8_t> bytes) noexcept override;
   [[nodiscard]] bool hasClient() const noexcept override { return has_client_; }
+  void plug(bool in) noexcept override;
   [[nodiscard]] std::string name() const override { return slave_; }
   /// The slave's own name, e.g. "/dev/pts/3"; another one after a client that left it claimed.
   [[nodiscard]] const std::string& slave() const noexcept { return slave_; }

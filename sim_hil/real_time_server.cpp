@@ -40,7 +40,7 @@ class Outbox {
 }  // namespace
 
 ServerSummary serve(Simulator& simulator, ByteLink& link, TruthPublisher& publisher,
-                    Duration duration, const volatile std::sig_atomic_t& stop) {
+                    FaultInbox* faults, Duration duration, const volatile std::sig_atomic_t& stop) {
   ServerSummary summary;
   std::array<std::uint8_t, 4096> input{};
   Outbox outbox;
@@ -52,6 +52,8 @@ ServerSummary serve(Simulator& simulator, ByteLink& link, TruthPublisher& publis
   bool had_client = false;
   while (stop == 0) {
     const Time now = monotonicNow();
+    if (faults != nullptr) faults->poll(simulator);
+    link.plug(!simulator.unplugged());
     for (std::size_t n = link.read(input); n > 0; n = link.read(input)) {
       simulator.receive(std::span(input).first(n));
       if (n < input.size()) break;

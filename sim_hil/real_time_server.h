@@ -8,6 +8,7 @@
 
 #include "common/time.h"
 #include "sim_hil/byte_link.h"
+#include "sim_hil/fault_inbox.h"
 #include "sim_hil/simulator.h"
 #include "sim_hil/truth_publisher.h"
 
@@ -22,7 +23,9 @@ struct ServerSummary {
 /// Serves until `stop` is set or `duration` has been simulated (zero: no end). Wakes up on an
 /// absolute grid; if the machine cannot follow, it catches up by at most 100 ms and leaves out the
 /// rest.
+/// @param faults where faults come from meanwhile; null: from nowhere.
 [[nodiscard]] ServerSummary serve(Simulator& simulator, ByteLink& link, TruthPublisher& publisher,
-                                  Duration duration, const volatile std::sig_atomic_t& stop);
+                                  FaultInbox* faults, Duration duration,
+                                  const volatile std::sig_atomic_t& stop);
 
 }  // namespace tautline::sim

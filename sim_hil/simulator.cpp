@@ -154,6 +154,10 @@ std::size_t Simulator::transmit(std::span<std::uint8_t> out) noexcept {
 
 bool Simulator::inject(const Fault& fault) noexcept { return impl_->plant.faults().add(fault); }
 
+bool Simulator::unplugged() const noexcept {
+  return impl_->plant.faults().active(FaultTarget::kBus, FaultMode::kUnplug) != nullptr;
+}
+
 const Truth& Simulator::truth() const noexcept { return impl_->plant.truth(); }
 Time Simulator::now() const noexcept { return impl_->plant.now(); }
 

@@ -52,6 +52,10 @@ class Simulator {
   /// many are scheduled already. Real-time safe: no allocation, no locks, no exceptions.
   [[nodiscard]] bool inject(const Fault& fault) noexcept;
 
+  /// The cable to the station is out: whoever connects the two lets nothing pass. Real-time safe:
+  /// no allocation, no locks, no exceptions.
+  [[nodiscard]] bool unplugged() const noexcept;
+
   [[nodiscard]] const Truth& truth() const noexcept;
   [[nodiscard]] Time now() const noexcept;
 

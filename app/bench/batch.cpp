@@ -135,6 +135,7 @@ BatchResult runBatch(const Batch& batch) {
   job.each = [&](std::size_t k, const JobOutcome& outcome) {
     result.outcomes[left[k]] = outcome;
     if (outcome.failure.empty()) file.add(batch.keys[left[k]], outcome.line);
+    if (batch.each) batch.each(left[k], outcome);
     progress.add(!outcome.failure.empty() || (batch.failed && batch.failed(outcome)));
   };
   runAll(job);

@@ -23,6 +23,8 @@ struct Batch {
   std::function<std::string(std::size_t)> run;  ///< In a worker process; one line.
   /// Does this outcome count as failed in the progress? May be empty.
   std::function<bool(const JobOutcome&)> failed;
+  /// In the calling process, as they come; not for what the folder knows. May be empty.
+  std::function<void(std::size_t, const JobOutcome&)> each;
 };
 
 struct BatchResult {

@@ -1,10 +1,25 @@
 #include "app/bench/bench_faults.h"
 
+#include <string>
+
 namespace tautline::bench {
 
 using sim::Fault;
 using sim::FaultMode;
 using sim::FaultTarget;
+
+FaultOwner ownerOf(const Fault& fault) noexcept {
+  const sim::FaultKind* kind = sim::findFaultKind(fault.target, fault.mode);
+  if (kind == nullptr) return {.bench = true, .machine = true};
+  const bool bench = kind->place == sim::FaultPlace::kBench;
+  return {.bench = bench, .machine = !bench};
+}
+
+InputError tooManyFaults(const Fault& fault) {
+  return InputError({.key = describe(fault),
+                     .problem = "too many faults at once",
+                     .allowed = "at most " + std::to_string(sim::kMaxFaults)});
+}
 
 void BenchFaults::update(Time now) noexcept {
   faults_.update(now);
@@ -17,10 +32,6 @@ void BenchFaults::update(Time now) noexcept {
   const Fault* jump = faults_.active(FaultTarget::kLoop, FaultMode::kWrong);
   if (jump != nullptr && !jumped_) clock_ahead_ += fromSeconds(jump->value);
   jumped_ = jump != nullptr;
-}
-
-bool BenchFaults::unplugged() const noexcept {
-  return faults_.active(FaultTarget::kBus, FaultMode::kUnplug) != nullptr;
 }
 
 Duration BenchFaults::lateness() const noexcept {

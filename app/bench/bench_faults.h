@@ -1,21 +1,32 @@
 #pragma once
 
 /// @file
-/// Faults of what the bench is besides the machine: the cable, the operator's link, LCM, and the
-/// station's loop and clock.
+/// Faults of what the bench is besides the machine: the operator's link, LCM, and the station's
+/// loop and clock.
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
 #include "app/station/telemetry.h"
+#include "common/error.h"
 #include "common/time.h"
 #include "sim_hil/fault_schedule.h"
 #include "supervision/operator_command.h"
 
 namespace tautline::bench {
 
-/// Everything: real-time safe: no allocation, no locks, no exceptions.
+/// Whose fault it is: the bench's, the machine's, or, as `ok` heals whatever is there, both.
+struct FaultOwner {
+  bool bench{false};
+  bool machine{false};
+};
+[[nodiscard]] FaultOwner ownerOf(const sim::Fault& fault) noexcept;
+
+/// The error of a rig that has no room for this fault.
+[[nodiscard]] InputError tooManyFaults(const sim::Fault& fault);
+
+/// Everything in it is real-time safe: no allocation, no locks, no exceptions.
 class BenchFaults {
  public:
   explicit BenchFaults(std::uint64_t seed) noexcept : faults_(seed) {}
@@ -25,7 +36,6 @@ class BenchFaults {
   /// At the start of a cycle.
   void update(Time now) noexcept;
 
-  [[nodiscard]] bool unplugged() const noexcept;
   [[nodiscard]] bool operatorCut() const noexcept { return operator_cut_; }
   [[nodiscard]] bool lcmCut() const noexcept { return lcm_cut_; }
   /// By how much this cycle comes too late.

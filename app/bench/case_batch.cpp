@@ -19,27 +19,24 @@ CaseBatchResult flyCases(const CaseBatch& cases) {
   batch.run = [&](std::size_t i) {
     const FlightCase flight = cases.flight(i);
     const auto sink = cases.sink ? cases.sink(flight) : nullptr;
-    return toJson(runCase(flight, sink.get()));
+    return toJson(cases.fly ? cases.fly(flight, sink.get()) : runCase(flight, sink.get()));
+  };
+  const auto result_of = [&](std::size_t i, const JobOutcome& outcome) {
+    if (outcome.failure.empty()) return caseFromJson(outcome.line);
+    CaseResult dead = resultOf(cases.flight(i));
+    dead.failure = outcome.failure;
+    return dead;
   };
   batch.failed = [](const JobOutcome& o) { return !caseFromJson(o.line).passed(); };
+  if (cases.each)
+    batch.each = [&](std::size_t i, const JobOutcome& o) { cases.each(i, result_of(i, o)); };
   const BatchResult ran = runBatch(batch);
 
   CaseBatchResult result;
   result.known = ran.known;
   result.wall_s = ran.wall_s;
-  for (std::size_t i = 0; i < cases.count; ++i) {
-    const JobOutcome& outcome = ran.outcomes[i];
-    if (outcome.failure.empty()) {
-      result.cases.push_back(caseFromJson(outcome.line));
-      continue;
-    }
-    const FlightCase flight = cases.flight(i);
-    CaseResult dead;
-    dead.name = flight.name;
-    dead.seed = flight.bench.seed;
-    dead.failure = outcome.failure;
-    result.cases.push_back(dead);
-  }
+  for (std::size_t i = 0; i < cases.count; ++i)
+    result.cases.push_back(result_of(i, ran.outcomes[i]));
   return result;
 }
 

@@ -20,6 +20,10 @@ struct CaseBatch {
   std::function<FlightCase(std::size_t)> flight;
   /// Where a flight's messages go. May be empty.
   std::function<std::unique_ptr<TelemetrySink>(const FlightCase&)> sink;
+  /// Flies one, in a worker process; empty: in lock-step.
+  std::function<CaseResult(const FlightCase&, TelemetrySink*)> fly;
+  /// In the calling process, as they come; not for what the folder knows. May be empty.
+  std::function<void(std::size_t, const CaseResult&)> each;
 };
 
 struct CaseBatchResult {

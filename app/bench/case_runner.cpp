@@ -25,9 +25,9 @@ constexpr std::int64_t kSession = 1;
 /// When each phase began.
 class Phases {
  public:
-  void update(const Lockstep& bench) {
-    const Time now = bench.now();
-    const StepOutput& out = bench.output();
+  void update(const Rig& rig) {
+    const Time now = rig.now();
+    const StepOutput& out = rig.output();
     if (out.supervision.changed || !entered_) entered_ = now;
     note(modes_[static_cast<std::size_t>(out.supervision.mode)], now);
     for (std::size_t i = 0; i < conditions_.size(); ++i) {
@@ -79,9 +79,9 @@ class Operator {
     std::optional<tautline::mission_chunk_t> chunk;
     std::optional<TeleopRates> sticks;
   };
-  Said next(const Lockstep& bench, const Phases& phases) {
+  Said next(const Rig& rig, const Phases& phases) {
     Said said;
-    if (queue_.empty() && bench.now() > Time{}) think(bench, phases);
+    if (queue_.empty() && rig.now() > Time{}) think(rig, phases);
     if (queue_.empty()) return said;
     said = queue_.front();
     queue_.pop_front();
@@ -103,13 +103,13 @@ class Operator {
     bool taken{false};
   };
 
-  void think(const Lockstep& bench, const Phases& phases) {
-    const Time now = bench.now();
+  void think(const Rig& rig, const Phases& phases) {
+    const Time now = rig.now();
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const OperatorEntry& entry = flight_.script[i];
       State& state = states_[i];
       if (entry.in_mode) {
-        const bool there = bench.output().supervision.mode == entry.phase.mode;
+        const bool there = rig.output().supervision.mode == entry.phase.mode;
         if (!there || now < phases.entered() + entry.at) continue;
         if (state.first && state.mode_entered == phases.entered()) continue;
       } else if (!phases.over(entry.phase, entry.at, now)) {
@@ -160,32 +160,33 @@ class Expectations {
   explicit Expectations(const std::vector<Expectation>& all) : all_(all), met_(all.size(), false) {}
 
   /// What is now certain to be wrong.
-  std::optional<std::string> check(const Lockstep& bench, const Phases& phases) {
+  std::optional<std::string> check(const Rig& rig, const Phases& phases) {
     for (std::size_t i = 0; i < all_.size(); ++i) {
       const Expectation& e = all_[i];
       const std::optional<Time> began = phases.begin(e.phase);
-      if (!began || met_[i] || bench.now() < *began + e.after) continue;
+      if (!began || met_[i] || rig.now() < *began + e.after) continue;
       if (e.kind == Expectation::Kind::kBound) {
-        const double value = e.quantity->of(bench);
+        if (rig.now() < *began + e.after + rig.allowance()) continue;
+        const double value = e.quantity->of(rig);
         if (!e.range.contains(value)) return failure(e, fmt::format("it was {:.3f}", value));
-        met_[i] = bench.now() >= *began + e.after + e.within;
+        met_[i] = rig.now() >= *began + e.after + e.within;
         continue;
       }
-      met_[i] = seen(e, bench.output());
-      if (!met_[i] && bench.now() > *began + e.after + e.within)
+      met_[i] = seen(e, rig.output());
+      if (!met_[i] && rig.now() > *began + e.after + e.within + rig.allowance())
         return failure(
-            e, fmt::format("in {} with {}", nameOf(bench.output().supervision.mode, kModeNames),
-                           describe(bench.output().conditions)));
+            e, fmt::format("in {} with {}", nameOf(rig.output().supervision.mode, kModeNames),
+                           describe(rig.output().conditions)));
     }
     return {};
   }
 
   /// At the end: what never had its time.
-  [[nodiscard]] std::optional<std::string> missing(const Lockstep& bench) const {
+  [[nodiscard]] std::optional<std::string> missing(const Rig& rig) const {
     for (std::size_t i = 0; i < all_.size(); ++i) {
       if (!met_[i])
         return failure(all_[i], fmt::format("the flight ended before, in {}",
-                                            nameOf(bench.output().supervision.mode, kModeNames)));
+                                            nameOf(rig.output().supervision.mode, kModeNames)));
     }
     return {};
   }
@@ -211,7 +212,7 @@ class FaultPlans {
  public:
   explicit FaultPlans(const std::vector<FaultPlan>& plans) : waiting_(plans) {}
 
-  void update(Lockstep& bench, Phases& phases) {
+  void update(Rig& rig, Phases& phases) {
     for (std::size_t i = 0; i < waiting_.size();) {
       const std::optional<Time> began = phases.begin(waiting_[i].phase);
       if (!began) {
@@ -220,12 +221,12 @@ class FaultPlans {
       }
       sim::Fault fault = waiting_[i].fault;
       fault.at = *began + (fault.at - Time{});
-      bench.inject(fault);
+      rig.inject(fault);
       begins_.push_back(fault.at);
       waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
     }
     for (const Time at : begins_) {
-      if (bench.now() >= at) phases.faultBegan(at);
+      if (rig.now() >= at) phases.faultBegan(at);
     }
   }
 
@@ -238,12 +239,21 @@ bool atRest(const sim::Truth& truth) { return truth.on_ground && !truth.motors_o
 
 }  // namespace
 
-CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
-  const Time began = monotonicNow();
+CaseResult resultOf(const FlightCase& flight) {
   CaseResult result;
   result.name = flight.name;
   result.seed = flight.bench.seed;
+  return result;
+}
+
+CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
   Lockstep bench(flight.bench, sink);
+  return runCase(flight, bench);
+}
+
+CaseResult runCase(const FlightCase& flight, Rig& rig) {
+  const Time began = monotonicNow();
+  CaseResult result = resultOf(flight);
   FlightWatch watch(flight.limits);
   Phases phases;
   Operator pilot(flight);
@@ -252,45 +262,45 @@ CaseResult runCase(const FlightCase& flight, TelemetrySink* sink) {
   bool flown = false;
   Time busy{};  // last time that the flight was not over
 
-  while (result.failure.empty() && bench.now() < Time{} + flight.limit &&
-         bench.now() < busy + kSettled) {
-    const Operator::Said said = pilot.next(bench, phases);
-    if (said.sticks) bench.holdSticks(Sticks{kSession, true, *said.sticks});
-    const StepOutput& out = bench.step(said.command, said.chunk ? &*said.chunk : nullptr);
+  while (result.failure.empty() && rig.now() < Time{} + flight.limit &&
+         rig.now() < busy + kSettled) {
+    const Operator::Said said = pilot.next(rig, phases);
+    if (said.sticks) rig.holdSticks(Sticks{kSession, true, *said.sticks});
+    const StepOutput& out = rig.step(said.command, said.chunk ? &*said.chunk : nullptr);
     for (const std::int32_t sequence : pilot.navigates()) watch.navigateAsked(sequence);
     pilot.hear(out);
-    phases.update(bench);
-    faults.update(bench, phases);
-    flown = flown || !bench.truth().on_ground;
+    phases.update(rig);
+    faults.update(rig, phases);
+    flown = flown || !rig.truth().on_ground;
     const Mode mode = out.supervision.mode;
     const bool over = mode == Mode::kStandby || mode == Mode::kEstop;
-    if (!bench.truth().crashed && !(flown && over)) busy = bench.now();
-    result.height_max_m = std::max(result.height_max_m, bench.truth().p_WD.y() - bench.floor());
-    std::optional<std::string> problem = watch.check(bench);
-    if (!problem) problem = expectations.check(bench, phases);
+    if (!rig.truth().crashed && !(flown && over)) busy = rig.now();
+    result.height_max_m = std::max(result.height_max_m, rig.truth().p_WD.y() - rig.floor());
+    std::optional<std::string> problem = watch.check(rig);
+    if (!problem) problem = expectations.check(rig, phases);
     if (problem)
-      result.failure = fmt::format("at {:.2f} s: {}", toSeconds(bench.now() - Time{}), *problem);
+      result.failure = fmt::format("at {:.2f} s: {}", toSeconds(rig.now() - Time{}), *problem);
   }
 
-  result.end = bench.output().supervision.mode;
-  result.crash = bench.truth().crash_reason;
+  result.end = rig.output().supervision.mode;
+  result.crash = rig.truth().crash_reason;
   result.faulted = phases.begin({Phase::Kind::kFault, {}, {}}).has_value();
-  result.flight_s = toSeconds(bench.now() - Time{});
+  result.flight_s = toSeconds(rig.now() - Time{});
   if (result.failure.empty()) {
     const CaseLimits& limits = flight.limits;
     if (!flight.faults.empty() && !result.faulted) {
       result.failure = fmt::format(
           "the flight never got as far as its fault: after {:.1f} s in {} with {}", result.flight_s,
-          nameOf(result.end, kModeNames), describe(bench.output().conditions));
-    } else if (!limits.end.empty() && !limits.end.has(result.end) && !bench.truth().crashed) {
+          nameOf(result.end, kModeNames), describe(rig.output().conditions));
+    } else if (!limits.end.empty() && !limits.end.has(result.end) && !rig.truth().crashed) {
       result.failure = fmt::format(
           "expected to end in {}: after {:.1f} s in {} with {}", limits.end.text(), result.flight_s,
-          nameOf(result.end, kModeNames), describe(bench.output().conditions));
-    } else if (limits.landed && !bench.truth().crashed && !atRest(bench.truth())) {
+          nameOf(result.end, kModeNames), describe(rig.output().conditions));
+    } else if (limits.landed && !rig.truth().crashed && !atRest(rig.truth())) {
       result.failure = fmt::format(
           "expected on the ground with motors off: {:.2f} m above the floor{}",
-          bench.truth().p_WD.y() - bench.floor(), bench.truth().motors_on ? ", motors on" : "");
-    } else if (const auto missing = expectations.missing(bench)) {
+          rig.truth().p_WD.y() - rig.floor(), rig.truth().motors_on ? ", motors on" : "");
+    } else if (const auto missing = expectations.missing(rig)) {
       result.failure = *missing;
     }
   }

@@ -17,23 +17,23 @@ namespace fs = std::filesystem;
 
 constexpr Duration kDefaultWithin = std::chrono::seconds(5);
 
-double heightOf(const Lockstep& b) { return b.truth().p_WD.y() - b.floor(); }
+double heightOf(const Rig& rig) { return rig.truth().p_WD.y() - rig.floor(); }
 
 /// Speed that the station asks for, as far as tether length and elevation say [m/s].
-double commandedSpeedOf(const Lockstep& b) {
-  const VehicleCommand& c = b.output().command;
-  const double L = b.truth().length;
+double commandedSpeedOf(const Rig& rig) {
+  const VehicleCommand& c = rig.output().command;
+  const double L = rig.truth().length;
   return std::hypot(c.length_rate, std::hypot(L * c.elevation_rate, L * c.azimuth_rate));
 }
 
 constexpr std::array kQuantities{
     Quantity{"height_m", heightOf},
-    Quantity{"speed_mps", [](const Lockstep& b) { return b.truth().v_WD.norm(); }},
-    Quantity{"tension_n", [](const Lockstep& b) { return b.truth().tension; }},
-    Quantity{"tether_length_m", [](const Lockstep& b) { return b.truth().length; }},
+    Quantity{"speed_mps", [](const Rig& rig) { return rig.truth().v_WD.norm(); }},
+    Quantity{"tension_n", [](const Rig& rig) { return rig.truth().tension; }},
+    Quantity{"tether_length_m", [](const Rig& rig) { return rig.truth().length; }},
     Quantity{"commanded_speed_mps", commandedSpeedOf},
     Quantity{"localization_error_m",
-             [](const Lockstep& b) { return (b.output().estimate.p_WD - b.truth().p_WD).norm(); }},
+             [](const Rig& rig) { return (rig.output().estimate.p_WD - rig.truth().p_WD).norm(); }},
 };
 
 /// The entry of that name; throws with the names there are.
@@ -226,7 +226,7 @@ void readSurroundings(TomlTable& table, const std::string& file, FlightCase& fli
   const fs::path folder = fs::path(file).parent_path();
   std::string scene_file;
   table.require("scene", scene_file);
-  Scene scene = readScene(folder / scene_file);
+  const Scene scene = readScene(folder / scene_file);
   for (TomlTable& obstacle : table.tables("obstacle")) {
     Box box;
     box.name = "obstacle that no map has";
@@ -235,7 +235,9 @@ void readSurroundings(TomlTable& table, const std::string& file, FlightCase& fli
     obstacle.finish();
     if (!(box.min.array() < box.max.array()).all())
       throw obstacle.error("max_m", "is not above min_m", "min_m < max_m in every component");
-    scene.boxes.push_back(box);
+    box.min -= scene.reel;
+    box.max -= scene.reel;
+    flight.bench.unmapped.push_back(box);
   }
   flight.bench.world = sceneInWorld(scene);
   if (std::string mission; table.read("mission", mission))

@@ -65,7 +65,7 @@ struct FaultPlan {
 /// What can be bounded, by its name in files.
 struct Quantity {
   const char* name;
-  double (*of)(const Lockstep& bench);
+  double (*of)(const Rig& rig);
 };
 
 /// What has to be seen between `after` and `after + within` from the beginning of the phase.

@@ -33,17 +33,17 @@ double FlightWatch::Stream::limit(double least) const noexcept {
   return std::clamp(kStalePeriods * period + kStaleMargin, least, kStaleAlways + kStaleMargin);
 }
 
-std::optional<std::string> FlightWatch::check(const Lockstep& bench) {
-  std::optional<std::string> problem = checkFinite(bench);
-  if (!problem) problem = checkRates(bench);
-  if (!problem) problem = checkMachine(bench);
+std::optional<std::string> FlightWatch::check(const Rig& rig) {
+  std::optional<std::string> problem = checkFinite(rig);
+  if (!problem) problem = checkRates(rig);
+  if (!problem) problem = checkMachine(rig);
   // Last, because it remembers the mode.
-  std::optional<std::string> mode_problem = checkModes(bench);
+  std::optional<std::string> mode_problem = checkModes(rig);
   return problem ? problem : mode_problem;
 }
 
-std::optional<std::string> FlightWatch::checkFinite(const Lockstep& bench) const {
-  const StepOutput& out = bench.output();
+std::optional<std::string> FlightWatch::checkFinite(const Rig& rig) const {
+  const StepOutput& out = rig.output();
   const VehicleCommand& c = out.command;
   const Estimate& e = out.estimate;
   const bool command = std::isfinite(c.length_rate) && std::isfinite(c.elevation_rate) &&
@@ -56,11 +56,11 @@ std::optional<std::string> FlightWatch::checkFinite(const Lockstep& bench) const
   return {};
 }
 
-std::optional<std::string> FlightWatch::checkRates(const Lockstep& bench) {
-  const StepOutput& out = bench.output();
-  const SensorFrame& f = bench.sensors();
-  reel_.see(f.reel.sequence, bench.now());
-  angles_.see(f.angles.sequence, bench.now());
+std::optional<std::string> FlightWatch::checkRates(const Rig& rig) {
+  const StepOutput& out = rig.output();
+  const SensorFrame& f = rig.sensors();
+  reel_.see(f.reel.sequence, rig.now());
+  angles_.see(f.angles.sequence, rig.now());
   if (!moves(out.command)) return {};
   const Mode mode = out.supervision.mode;
   if (mode == Mode::kStandby || mode == Mode::kArmed || mode == Mode::kEstop)
@@ -68,21 +68,21 @@ std::optional<std::string> FlightWatch::checkRates(const Lockstep& bench) {
   // A descent does not ask the tether where it is.
   if (mode == Mode::kDescend) return {};
   for (const auto& [stream, name] : {std::pair{&reel_, "tether length"}, {&angles_, "angles"}}) {
-    const double age = toSeconds(bench.now() - stream->arrived);
+    const double age = toSeconds(rig.now() - stream->arrived);
     const double limit = stream->limit(limits_.stale_s);
-    if (age > limit)
+    if (age > limit + toSeconds(rig.allowance()))
       return fmt::format("rates are commanded {:.2f} s after the last {} (limit {:.2f} s)", age,
                          name, limit);
   }
-  const double all = bench.station().core.limits.tether_length_m;
+  const double all = rig.station().core.limits.tether_length_m;
   if (f.reel.valid && f.reel.value.length >= all - kAtLimit && out.command.length_rate > kOutward)
     return fmt::format("{:.3f} m/s are to be paid out with {:.2f} of {:.2f} m out",
                        out.command.length_rate, f.reel.value.length, all);
   return {};
 }
 
-std::optional<std::string> FlightWatch::checkModes(const Lockstep& bench) {
-  const StepOutput& out = bench.output();
+std::optional<std::string> FlightWatch::checkModes(const Rig& rig) {
+  const StepOutput& out = rig.output();
   const Mode before = mode_;
   mode_ = out.supervision.mode;
   if (mode_ == before) return {};
@@ -97,11 +97,11 @@ std::optional<std::string> FlightWatch::checkModes(const Lockstep& bench) {
   return fmt::format("{} followed {}", nameOf(mode_, kModeNames), nameOf(before, kModeNames));
 }
 
-std::optional<std::string> FlightWatch::checkMachine(const Lockstep& bench) const {
-  const sim::Truth& truth = bench.truth();
+std::optional<std::string> FlightWatch::checkMachine(const Rig& rig) const {
+  const sim::Truth& truth = rig.truth();
   if (truth.crashed && !limits_.may_crash)
     return fmt::format("crash: {}", nameOf(truth.crash_reason, sim::kCrashReasonNames));
-  const double height = truth.p_WD.y() - bench.floor();
+  const double height = truth.p_WD.y() - rig.floor();
   if (height > limits_.max_height_m)
     return fmt::format("{:.2f} m above the floor (limit {:.2f} m)", height, limits_.max_height_m);
   return {};

@@ -21,7 +21,7 @@ class FlightWatch {
   void navigateAsked(std::int64_t sequence) { navigate_sequences_.insert(sequence); }
 
   /// After every cycle; returns what is wrong in it, once each.
-  [[nodiscard]] std::optional<std::string> check(const Lockstep& bench);
+  [[nodiscard]] std::optional<std::string> check(const Rig& rig);
 
  private:
   /// Arrivals of one stream, as the bench sees them.
@@ -34,10 +34,10 @@ class FlightWatch {
     [[nodiscard]] double limit(double least) const noexcept;
   };
 
-  [[nodiscard]] std::optional<std::string> checkFinite(const Lockstep& bench) const;
-  [[nodiscard]] std::optional<std::string> checkRates(const Lockstep& bench);
-  [[nodiscard]] std::optional<std::string> checkModes(const Lockstep& bench);
-  [[nodiscard]] std::optional<std::string> checkMachine(const Lockstep& bench) const;
+  [[nodiscard]] std::optional<std::string> checkFinite(const Rig& rig) const;
+  [[nodiscard]] std::optional<std::string> checkRates(const Rig& rig);
+  [[nodiscard]] std::optional<std::string> checkModes(const Rig& rig);
+  [[nodiscard]] std::optional<std::string> checkMachine(const Rig& rig) const;
 
   CaseLimits limits_;
   std::set<std::int64_t> navigate_sequences_;

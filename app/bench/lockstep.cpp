@@ -26,25 +26,6 @@ constexpr Duration kHeartbeatPeriod = std::chrono::milliseconds(200);
 constexpr Duration kSettle = std::chrono::seconds(1);
 constexpr std::int64_t kSession = 1;  // the only operator there is
 
-StationConfig forBench(const LockstepConfig& config) {
-  if (!config.world.start) {
-    throw InputError({.key = "start_m",
-                      .problem = "the scene has none",
-                      .remedy = "say where the drone is parked"});
-  }
-  StationConfig station = config.station;
-  station.run_mode = RunMode::kSim;
-  station.core.guidance.home_position_m = *config.world.start;
-  if (config.map_known) station.core.fence.obstacles = fenceObstaclesOf(config.world);
-  return station;
-}
-
-sim::SimConfig simOf(const LockstepConfig& config) {
-  sim::SimConfig sim = config.sim;
-  sim.device = Lockstep::simDevice(config);
-  return sim;
-}
-
 /// Null for a device that has no bus.
 std::unique_ptr<FramePort> makeFrames(DeviceKind kind, BytePort& port) {
   switch (kind) {
@@ -68,11 +49,36 @@ std::unique_ptr<Device> makeDevice(const StationConfig& config, BytePort& port, 
 
 }  // namespace
 
+StationConfig stationOf(const LockstepConfig& config, RunMode run_mode) {
+  if (!config.world.start) {
+    throw InputError({.key = "start_m",
+                      .problem = "the scene has none",
+                      .remedy = "say where the drone is parked"});
+  }
+  StationConfig station = config.station;
+  station.run_mode = run_mode;
+  station.core.guidance.home_position_m = *config.world.start;
+  if (config.map_known) station.core.fence.obstacles = fenceObstaclesOf(config.world);
+  return station;
+}
+
+sim::SimConfig simOf(const LockstepConfig& config) {
+  sim::SimConfig sim = config.sim;
+  sim.device = Lockstep::simDevice(config);
+  return sim;
+}
+
+Scene worldOf(const LockstepConfig& config) {
+  Scene world = config.world;
+  world.boxes.insert(world.boxes.end(), config.unmapped.begin(), config.unmapped.end());
+  return world;
+}
+
 Lockstep::Lockstep(const LockstepConfig& config, TelemetrySink* sink)
-    : config_(forBench(config)),
+    : config_(stationOf(config, RunMode::kSim)),
       period_(fromSeconds(1.0 / config_.loop_rate_hz)),
       sim_device_(simDevice(config)),
-      simulator_(simOf(config), config.world, config.seed),
+      simulator_(simOf(config), worldOf(config), config.seed),
       faults_(config.seed),
       port_(simulator_),
       frames_(makeFrames(config_.device, port_)),
@@ -96,7 +102,7 @@ const StepOutput& Lockstep::step(const std::optional<OperatorCommand>& command,
   const Duration late = faults_.lateness();
   now_ += period_ + late;
   simulator_.advanceTo(now_);
-  if (faults_.unplugged() != unplugged_) {
+  if (simulator_.unplugged() != unplugged_) {
     unplugged_ = !unplugged_;
     unplugged_ ? port_.unplug() : port_.plug();
   }
@@ -132,15 +138,9 @@ sim::SimDevice Lockstep::simDevice(const LockstepConfig& config) noexcept {
 
 void Lockstep::inject(const sim::Fault& fault) {
   sim::checkFault(fault, sim_device_, true);
-  const sim::FaultKind* kind = sim::findFaultKind(fault.target, fault.mode);
-  // `ok` heals whatever is there, on both sides.
-  const bool ours = kind == nullptr || kind->place == sim::FaultPlace::kBench;
-  const bool machines = kind == nullptr || kind->place != sim::FaultPlace::kBench;
-  if ((ours && !faults_.add(fault)) || (machines && !simulator_.inject(fault))) {
-    throw InputError({.key = describe(fault),
-                      .problem = "too many faults at once",
-                      .allowed = "at most " + std::to_string(sim::kMaxFaults)});
-  }
+  const FaultOwner owner = ownerOf(fault);
+  if ((owner.bench && !faults_.add(fault)) || (owner.machine && !simulator_.inject(fault)))
+    throw tooManyFaults(fault);
 }
 
 /// The operator of the last command lives on, as the command line does while it waits.

@@ -10,9 +10,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "app/bench/bench_faults.h"
 #include "app/bench/memory_port.h"
+#include "app/bench/rig.h"
 #include "app/station/station.h"
 #include "app/station/station_config.h"
 #include "app/station/telemetry.h"
@@ -28,14 +30,23 @@ namespace tautline::bench {
 struct LockstepConfig {
   StationConfig station;
   sim::SimConfig sim;
-  Scene world;           ///< In W, with a start.
-  bool map_known{true};  ///< The station has the scene's obstacles as its map.
+  Scene world;                  ///< In W, with a start.
+  bool map_known{true};         ///< The station has the scene's obstacles as its map.
+  std::vector<Box> unmapped{};  ///< In W; the world has them too, and no map.
   std::uint64_t seed{1};
 };
 
+/// What the station is told of a flight in this run mode: home and map are the scene's. Throws
+/// InputError for a scene without a start.
+[[nodiscard]] StationConfig stationOf(const LockstepConfig& config, RunMode run_mode);
+/// What the machine is told: its device is the station's.
+[[nodiscard]] sim::SimConfig simOf(const LockstepConfig& config);
+/// Where it flies, with what no map has.
+[[nodiscard]] Scene worldOf(const LockstepConfig& config);
+
 /// One flight. The bench is the operator: it arms, takes off, navigates and lands as the command
 /// line would.
-class Lockstep {
+class Lockstep final : public Rig {
  public:
   /// `sink` gets every message of station and simulator, and outlives the bench; null: none. Throws
   /// InputError.
@@ -46,22 +57,22 @@ class Lockstep {
 
   /// One cycle, with an operator's command or a piece of a mission if there is one.
   const StepOutput& step(const std::optional<OperatorCommand>& command = {},
-                         const tautline::mission_chunk_t* chunk = nullptr);
+                         const tautline::mission_chunk_t* chunk = nullptr) override;
 
   /// Schedules a fault of machine or bench; a time that is past means now. Throws InputError if
   /// this device cannot have it, or if too many are scheduled already.
-  void inject(const sim::Fault& fault);
+  void inject(const sim::Fault& fault) override;
 
-  [[nodiscard]] Time now() const noexcept { return now_; }
-  [[nodiscard]] const StationConfig& station() const noexcept { return config_; }
-  [[nodiscard]] const StepOutput& output() const noexcept { return *output_; }
-  [[nodiscard]] const sim::Truth& truth() const noexcept { return simulator_.truth(); }
-  [[nodiscard]] const SensorFrame& sensors() const noexcept { return input_.sensors; }
-  [[nodiscard]] double floor() const noexcept { return floor_; }  ///< In W [m].
+  [[nodiscard]] Time now() const noexcept override { return now_; }
+  [[nodiscard]] const StationConfig& station() const noexcept override { return config_; }
+  [[nodiscard]] const StepOutput& output() const noexcept override { return *output_; }
+  [[nodiscard]] const sim::Truth& truth() const noexcept override { return simulator_.truth(); }
+  [[nodiscard]] const SensorFrame& sensors() const noexcept override { return input_.sensors; }
+  [[nodiscard]] double floor() const noexcept override { return floor_; }
+  [[nodiscard]] Duration allowance() const noexcept override { return Duration::zero(); }
   [[nodiscard]] MemoryPort& port() noexcept { return port_; }
 
-  /// Sticks of the operator from the next cycle on; none: hands off.
-  void holdSticks(const std::optional<Sticks>& sticks) noexcept { sticks_ = sticks; }
+  void holdSticks(const std::optional<Sticks>& sticks) noexcept override { sticks_ = sticks; }
   /// The operator's program stops, or runs again: heartbeats.
   void silence(bool silent) noexcept { silent_ = silent; }
 

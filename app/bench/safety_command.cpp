@@ -85,7 +85,7 @@ ExitCode flyCampaign(const Options& o) {
   if (!o.junit.empty()) writeJunit(o.junit, "safety", result.cases);
   if (!o.json.empty()) writeJson(o.json, result.cases);
   fmt::print("{}\n", summary(result.cases, result.wall_s));
-  return noneFailed(result.cases) ? ExitCode::kOk : ExitCode::kFailed;
+  return allPassed(result.cases) ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 }  // namespace

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <CLI/Config.hpp>
@@ -15,7 +18,10 @@
 
 #include "app/bench/case_batch.h"
 #include "app/bench/case_report.h"
+#include "app/bench/hil_rig.h"
 #include "app/bench/log_sink.h"
+#include "app/cli/termination.h"
+#include "app/lcm_access.h"
 
 namespace tautline::bench {
 namespace {
@@ -33,6 +39,7 @@ struct Options {
   std::string junit;
   std::string log;
   bool json{false};
+  bool hil{false};
 };
 
 /// A scenario file flown with one seed.
@@ -81,38 +88,75 @@ std::string logName(const FlightCase& flight) {
   return fmt::format("{}_{}.lcm", name, flight.bench.seed);
 }
 
-ExitCode flyScenarios(const Options& o) {
-  const std::vector<Run> runs = select(o);
-  if (!o.log.empty()) fs::create_directories(o.log);
+/// A flight for each of two processors: they need little of one, and are disturbed by each other.
+int hilJobs() {
+  constexpr unsigned kMost = 2;
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, kMost));
+}
+
+CaseBatch batchOf(const std::vector<Run>& runs, const Options& o) {
   CaseBatch batch;
   batch.count = runs.size();
-  batch.workers = o.jobs;
-  batch.flight = [&](std::size_t i) { return runs[i].flight; };
+  batch.workers = o.jobs == 0 && o.hil ? hilJobs() : o.jobs;
+  batch.flight = [&runs](std::size_t i) { return runs[i].flight; };
   if (!o.log.empty()) {
-    batch.sink = [&](const FlightCase& flight) {
+    fs::create_directories(o.log);
+    batch.sink = [&o](const FlightCase& flight) {
       return std::make_unique<LogSink>(fs::path(o.log) / logName(flight));
     };
   }
-  const CaseBatchResult flown = flyCases(batch);
-  const std::vector<CaseResult>& results = flown.cases;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const CaseResult& r = results[i];
-    if (o.json) {
-      fmt::print("{}\n", toJson(r));
-    } else if (!r.passed()) {
-      fmt::print("{}\n", failureLine(r, fmt::format("tautline-bench scenario {} --seed {}",
-                                                    runs[i].file, runs[i].flight.bench.seed)));
-    } else {
-      fmt::print("passed {} seed {}: {:.1f} s, ended in {}{}\n", r.name, r.seed, r.flight_s,
-                 nameOf(r.end, kModeNames),
-                 r.crash == sim::CrashReason::kNone
-                     ? std::string()
-                     : fmt::format(", crash: {}", nameOf(r.crash, sim::kCrashReasonNames)));
+  if (o.hil) {
+    batch.fly = [](const FlightCase& flight, TelemetrySink* sink) {
+      cli::endOnSignals();  // after which there is time to end the programs
+      return runCaseInHil(flight, sink);
+    };
+  }
+  return batch;
+}
+
+void show(const CaseResult& r, const std::string& file, const Options& o) {
+  const char* crash = nameOf(r.crash, sim::kCrashReasonNames);
+  if (o.json) {
+    fmt::print("{}\n", toJson(r));
+  } else if (!r.skipped.empty()) {
+    fmt::print("only in lock-step {} seed {}: {}\n", r.name, r.seed, r.skipped);
+  } else if (!r.passed()) {
+    fmt::print("{}\n", failureLine(r, fmt::format("tautline-bench scenario {} --seed {}{}", file,
+                                                  r.seed, o.hil ? " --hil" : "")));
+  } else {
+    fmt::print("passed {} seed {}: {:.1f} s, ended in {}{}{}\n", r.name, r.seed, r.flight_s,
+               nameOf(r.end, kModeNames),
+               r.crash == sim::CrashReason::kNone ? "" : fmt::format(", crash: {}", crash),
+               r.flights == 1 ? "" : fmt::format(", in flight {}", r.flights));
+  }
+  std::fflush(stdout);
+}
+
+ExitCode flyScenarios(const Options& o) {
+  std::vector<Run> runs;
+  std::vector<CaseResult> results;
+  if (o.hil) reachable(kDefaultLcmUrl);
+  for (Run& run : select(o)) {
+    const std::string why = o.hil ? whyOnlyInLockstep(run.flight) : std::string();
+    if (why.empty()) {
+      runs.push_back(std::move(run));
+      continue;
     }
+    results.push_back(resultOf(run.flight));
+    results.back().skipped = why;
+    show(results.back(), run.file, o);
+  }
+  CaseBatch batch = batchOf(runs, o);
+  const auto show_run = [&](std::size_t i, const CaseResult& r) { show(r, runs[i].file, o); };
+  if (o.hil) batch.each = show_run;  // each takes its minute
+  const CaseBatchResult flown = flyCases(batch);
+  for (std::size_t i = 0; i < flown.cases.size(); ++i) {
+    if (!o.hil) show_run(i, flown.cases[i]);
+    results.push_back(flown.cases[i]);
   }
   if (!o.json) fmt::print("{}\n", summary(results, flown.wall_s));
   if (!o.junit.empty()) writeJunit(o.junit, "scenarios", results);
-  return noneFailed(results) ? ExitCode::kOk : ExitCode::kFailed;
+  return allPassed(results) ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 }  // namespace
@@ -129,7 +173,11 @@ void addScenarioCommand(CLI::App& app, ExitCode& result) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   verb->add_option("--seed", options->seed, "first seed (default: the file's)");
-  verb->add_option("--jobs", options->jobs, "processes; 0: one for each processor")
+  verb->add_flag("--hil", options->hil,
+                 "fly with tautline-station and tautline-sim as processes on the wall clock; needs "
+                 "a multicast route");
+  verb->add_option("--jobs", options->jobs,
+                   "processes; 0: one for each processor, with --hil two flights at most")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   verb->add_option("--junit", options->junit, "write JUnit's XML");

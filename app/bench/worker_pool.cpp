@@ -1,6 +1,8 @@
 #include "app/bench/worker_pool.h"
 
 #include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -92,6 +94,7 @@ class Worker {
   }
 
   [[noreturn]] void work(int output) {
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     for (std::size_t i = next_; i < job_.count; i += stride_) {
       std::string line;
       try {

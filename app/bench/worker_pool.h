@@ -2,7 +2,8 @@
 
 /// @file
 /// Many independent jobs on all processors, each worker a process of its own: a job that kills its
-/// process is a failed job, and the others go on. Not real-time safe.
+/// process is a failed job, and the others go on. A worker whose pool is gone gets SIGTERM. Not
+/// real-time safe.
 
 #include <cstddef>
 #include <functional>

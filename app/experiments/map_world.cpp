@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
-#include "common/toml/toml_writer.h"
 #include "sim_hil/obstacles.h"
 
 namespace tautline::experiments {
@@ -191,22 +190,6 @@ Scene sceneFromWorld(const Scene& world, const Eigen::Vector3d& reel) {
   scene = sceneInWorld(scene);
   scene.reel = reel;
   return scene;
-}
-
-std::string sceneText(const Scene& scene) {
-  std::string text = fmt::format(
-      "version = 1\nname = {}\nmin_m = {}\nmax_m = {}\nfloor_m = {}\nresolution_m = {}\nreel_m = "
-      "{}\n",
-      tomlText(scene.name), tomlText(scene.min), tomlText(scene.max), tomlText(scene.floor),
-      tomlText(scene.resolution), tomlText(scene.reel));
-  if (scene.start) text += fmt::format("start_m = {}\n", tomlText(*scene.start));
-  for (const Reward& r : scene.rewards)
-    text += fmt::format("\n[[rewards]]\nposition_m = {}\nvalue = {}\n", tomlText(r.position),
-                        tomlText(r.value));
-  for (const Box& box : scene.boxes)
-    text += fmt::format("\n[[boxes]]\nname = {}\nmin_m = {}\nmax_m = {}\n{}", tomlText(box.name),
-                        tomlText(box.min), tomlText(box.max), box.sharp ? "sharp = true\n" : "");
-  return text;
 }
 
 }  // namespace tautline::experiments

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -46,10 +45,6 @@ inline constexpr double kFoot = 0.1;
 /// are more boxes than the plant takes, or the inflation is half a cell or more.
 [[nodiscard]] Scene worldOf(const planning::VoxelMap& map, const Eigen::Vector3d& reel,
                             const MissionPlan& mission, double inflation);
-
-/// The scene as `*.scene.toml`: room, floor, reel, start, rewards, boxes. Prisms and layers are not
-/// written.
-[[nodiscard]] std::string sceneText(const Scene& scene);
 
 /// The same scene with its reel at `reel`: back from W to M.
 [[nodiscard]] Scene sceneFromWorld(const Scene& world, const Eigen::Vector3d& reel);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "common/error.h"
 #include "common/mission/mission_file.h"
@@ -169,6 +170,49 @@ Scene parseScene(std::string_view text, const std::string& name) {
   Scene scene = sceneFrom(TomlFile::parse(text, name));
   scene.hash = fnv1a(text);
   return scene;
+}
+
+std::string sceneText(const Scene& scene) {
+  std::string text;
+  const auto line = [&text](const char* key, const auto& value) {
+    text += std::string(key) + " = " + tomlText(value) + '\n';
+  };
+  line("version", kSceneFileVersion);
+  line("name", scene.name);
+  line("min_m", scene.min);
+  line("max_m", scene.max);
+  line("floor_m", scene.floor);
+  line("resolution_m", scene.resolution);
+  line("reel_m", scene.reel);
+  if (scene.start) line("start_m", *scene.start);
+  for (const Reward& reward : scene.rewards) {
+    text += "\n[[rewards]]\n";
+    line("position_m", reward.position);
+    line("value", reward.value);
+  }
+  for (const Box& box : scene.boxes) {
+    text += "\n[[boxes]]\n";
+    line("name", box.name);
+    line("min_m", box.min);
+    line("max_m", box.max);
+    if (box.sharp) line("sharp", box.sharp);
+  }
+  for (const Prism& prism : scene.prisms) {
+    text += "\n[[prisms]]\n";
+    line("name", prism.name);
+    line("footprint_m", std::span(prism.footprint));
+    line("y_min_m", prism.y_min);
+    line("y_max_m", prism.y_max);
+    if (prism.sharp) line("sharp", prism.sharp);
+  }
+  for (const SceneLayer& layer : scene.layers) {
+    text += "\n[[layers]]\n";
+    line("element", layer.element);
+    line("min_m", layer.min);
+    line("max_m", layer.max);
+    line("value", layer.value);
+  }
+  return text;
 }
 
 Scene sceneInWorld(const Scene& scene) {

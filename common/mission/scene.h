@@ -78,6 +78,9 @@ struct Scene {
 /// `name` stands for the file in errors.
 [[nodiscard]] Scene parseScene(std::string_view text, const std::string& name);
 
+/// What parseScene() reads back as the same scene, bit for bit but for the hash.
+[[nodiscard]] std::string sceneText(const Scene& scene);
+
 /// The same scene with the reel outlet as origin, so in W; its floor is then at -reel.y.
 [[nodiscard]] Scene sceneInWorld(const Scene& scene);
 

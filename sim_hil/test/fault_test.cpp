@@ -79,6 +79,20 @@ TEST(ParseFault, ReadsTimesAndValues) {
   EXPECT_EQ(describe(parseFault("flag:HARD_KILL on 1")), "flag:HARD_KILL on");
 }
 
+TEST(ParseFault, ReadsBackWhatFaultTextWrites) {
+  for (const char* text : {"encoder wrong 10.25 5 -0.1", "encoder off 0", "air gust 1 2 3,0.1,-1",
+                           "flag:HARD_KILL on 0.003 4", "mode:TIMEOUT on 1", "tether ok 2",
+                           "bus unplug 3 4", "reel slow 0 60 0.02"}) {
+    const Fault f = parseFault(text);
+    const Fault again = parseFault(faultText(f));
+    EXPECT_EQ(describe(again), describe(f)) << text;
+    EXPECT_EQ(again.at, f.at) << text;
+    EXPECT_EQ(again.lasting, f.lasting) << text;
+    EXPECT_EQ(again.value, f.value) << text;
+    EXPECT_EQ(again.velocity, f.velocity) << text;
+  }
+}
+
 TEST(ParseFault, RefusesWhatIsNone) {
   for (const char* text : {"", "encoder", "encoder off", "encoder off soon", "encoder off 1 2 3 4",
                            "encoder off 1e999", "gps off 1", "flag on 1", "flag:WINGS on 1",
@@ -99,6 +113,8 @@ TEST(CheckFault, KnowsDevicesAndPlaces) {
   EXPECT_FALSE(refused("encoder off 1", SimDevice::kFotokite, false));
   EXPECT_TRUE(refused("bus crc 1", SimDevice::kFotokite, true));
   EXPECT_FALSE(refused("bus crc 1", SimDevice::kTautlineSerial, false));
+  EXPECT_FALSE(refused("bus unplug 1", SimDevice::kFotokite, false));
+  EXPECT_TRUE(refused("bus unplug 1", SimDevice::kTautlineCan, false)) << "not its cable";
   EXPECT_TRUE(refused("loop delayed 1", SimDevice::kFotokite, false));
   EXPECT_FALSE(refused("loop delayed 1", SimDevice::kFotokite, true));
   EXPECT_TRUE(refused("flag:I2C_ERROR on 1", SimDevice::kTautlineSerial, true));

@@ -155,6 +155,29 @@ TEST(PtyLink, ClientsComeAndGo) {
   }
 }
 
+TEST(PtyLink, UnpluggedItIsGoneForItsClientUntilPluggedInAgain) {
+  const Folder folder;
+  PtyLink pty(folder / "device");
+  std::array<std::uint8_t, 16> buffer;
+  const std::array<std::uint8_t, 3> hello{'h', 'i', '\n'};
+  const Port before(folder / "device");
+  ASSERT_EQ(pty.read(buffer), 0U);
+  ASSERT_TRUE(pty.hasClient());
+  for (int twice = 0; twice < 2; ++twice) pty.plug(false);
+  EXPECT_FALSE(fs::exists(fs::symlink_status(folder / "device")));
+  EXPECT_EQ(pty.read(buffer), 0U);
+  EXPECT_FALSE(pty.hasClient());
+  EXPECT_EQ(pty.write(hello), 3U);  // into nowhere
+  EXPECT_EQ(before.receive(), "");
+  for (int twice = 0; twice < 2; ++twice) pty.plug(true);
+  const Port after(folder / "device");
+  ASSERT_TRUE(after.good());
+  EXPECT_EQ(pty.read(buffer), 0U);
+  EXPECT_TRUE(pty.hasClient());
+  EXPECT_EQ(pty.write(hello), 3U);
+  EXPECT_EQ(after.receive(), "hi\n");
+}
+
 TEST(PtyLink, AClientThatDoesNotReadDoesNotBlock) {
   const Folder folder;
   PtyLink pty(folder / "device");

@@ -15,6 +15,7 @@
 #include "app/bench/batch.h"
 #include "app/bench/case_report.h"
 #include "app/bench/case_runner.h"
+#include "app/bench/hil_rig.h"
 
 namespace tautline::bench {
 namespace {
@@ -167,7 +168,7 @@ TEST_F(CampaignTable, HasEveryKindOfTheMenuThatTheBenchCanFly) {
   }
 }
 
-TEST_F(CampaignTable, EveryConditionOfTheFailsafeTableHasAScenario) {
+TEST_F(CampaignTable, EveryConditionOfTheFailsafeTableHasAScenarioInLockstepAndInHil) {
   // Checks before the flight, and what no lock-step flight has: a host, LCM, a recorder.
   const ConditionSet elsewhere{Condition::kVehicleFlying,
                                Condition::kNoOperator,
@@ -185,7 +186,9 @@ TEST_F(CampaignTable, EveryConditionOfTheFailsafeTableHasAScenario) {
   ConditionSet expected;
   for (const fs::directory_entry& entry : fs::directory_iterator(kScenarios)) {
     if (!entry.path().string().ends_with(".scenario.toml")) continue;
-    for (const Expectation& e : readScenario(entry.path().string()).expectations) {
+    const FlightCase flight = readScenario(entry.path().string());
+    if (!whyOnlyInLockstep(flight).empty()) continue;
+    for (const Expectation& e : flight.expectations) {
       if (e.kind == Expectation::Kind::kCondition) expected = expected | e.conditions;
     }
   }
@@ -288,14 +291,22 @@ TEST(CaseReport, JsonComesBackAndJunitIsWritten) {
   EXPECT_THROW(static_cast<void>(caseFromJson("half a li")), InputError);
 
   const fs::path path = fs::path(::testing::TempDir()) / "tautline_junit.xml";
-  writeJunit(path.string(), "suite", {r, CaseResult{}});
+  CaseResult skipped;
+  skipped.skipped = "not here";
+  EXPECT_EQ(caseFromJson(toJson(skipped)).skipped, "not here");
+  writeJunit(path.string(), "suite", {r, CaseResult{}, skipped});
   std::ifstream in(path);
   const std::string xml{std::istreambuf_iterator<char>(in), {}};
   fs::remove(path);
-  EXPECT_NE(xml.find("tests=\"2\" failures=\"1\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("tests=\"3\" failures=\"1\" skipped=\"1\""), std::string::npos) << xml;
   EXPECT_NE(xml.find("a &lt;b&gt; &amp; &quot;c&quot;"), std::string::npos);
-  EXPECT_FALSE(noneFailed({r}));
-  EXPECT_TRUE(noneFailed({CaseResult{}}));
+  EXPECT_FALSE(allPassed({r}));
+  EXPECT_TRUE(allPassed({CaseResult{}}));
+  EXPECT_TRUE(allPassed({CaseResult{}, skipped}));
+  EXPECT_FALSE(allPassed({skipped})) << "nothing was flown";
+  EXPECT_NE(summary({CaseResult{}, skipped}, 1.0).find("\n1 passed, 0 failed, 1 only in lock-step"),
+            std::string::npos);
+  EXPECT_TRUE(summary({CaseResult{}}, 1.0).ends_with("\n1 passed, 0 failed"));
 }
 
 }  // namespace

@@ -51,6 +51,44 @@ TEST(Scene, ReadsEverything) {
   EXPECT_EQ(scene.layers[0].value, 0.25);
 }
 
+TEST(Scene, TextReadsBackAsTheSameScene) {
+  const Scene scene = parseScene(
+      kRoom +
+          "floor_m = 0.1\nresolution_m = 0.2\nstart_m = [1, 0.3, 3]\n"
+          "[[boxes]]\nname = 'a \"b\"'\nmin_m = [2, 0, 2]\nmax_m = [3, 1.1, 3]\nsharp = true\n"
+          "[[prisms]]\nname = 'p'\nfootprint_m = [[4, 4], [5.3, 4], [4, 5]]\ny_min_m = 0\n"
+          "y_max_m = 2\n[[rewards]]\nposition_m = [5, 1, 1]\nvalue = 0.9\n"
+          "[[layers]]\nelement = 'surface'\nmin_m = [0, 0, 0]\nmax_m = [9, 1, 3]\nvalue = 0.7\n",
+      "s");
+  const Scene world = sceneInWorld(scene);
+  const Scene again = parseScene(sceneText(world), "again");
+  EXPECT_EQ(again.name, world.name);
+  EXPECT_EQ(again.min, world.min);
+  EXPECT_EQ(again.max, world.max);
+  EXPECT_EQ(again.floor, world.floor);
+  EXPECT_EQ(again.resolution, world.resolution);
+  EXPECT_EQ(again.reel, world.reel);
+  EXPECT_EQ(again.start, world.start);
+  ASSERT_EQ(again.boxes.size(), 1U);
+  EXPECT_EQ(again.boxes[0].name, world.boxes[0].name);
+  EXPECT_EQ(again.boxes[0].min, world.boxes[0].min);
+  EXPECT_EQ(again.boxes[0].max, world.boxes[0].max);
+  EXPECT_TRUE(again.boxes[0].sharp);
+  ASSERT_EQ(again.prisms.size(), 1U);
+  EXPECT_EQ(again.prisms[0].footprint, world.prisms[0].footprint);
+  EXPECT_EQ(again.prisms[0].y_min, world.prisms[0].y_min);
+  EXPECT_EQ(again.prisms[0].y_max, world.prisms[0].y_max);
+  EXPECT_FALSE(again.prisms[0].sharp);
+  ASSERT_EQ(again.rewards.size(), 1U);
+  EXPECT_EQ(again.rewards[0].position, world.rewards[0].position);
+  EXPECT_EQ(again.rewards[0].value, 0.9);
+  ASSERT_EQ(again.layers.size(), 1U);
+  EXPECT_EQ(again.layers[0].element, "surface");
+  EXPECT_EQ(again.layers[0].min, world.layers[0].min);
+  EXPECT_EQ(again.layers[0].max, world.layers[0].max);
+  EXPECT_EQ(again.layers[0].value, 0.7);
+}
+
 TEST(Scene, EveryErrorNamesItsRow) {
   const std::string layer = "[[layers]]\nelement = 'surface'\nmin_m = [0, 0, 0]\n";
   const std::string prism = "[[prisms]]\nname = 'p'\ny_min_m = 0\ny_max_m = 2\nfootprint_m = ";

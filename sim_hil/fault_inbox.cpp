@@ -1,0 +1,56 @@
+#include "sim_hil/fault_inbox.h"
+
+#include <cstdio>
+
+#include "common/error.h"
+#include "common/multicast.h"
+#include "lcmtypes/channels.h"
+#include "sim_hil/fault_schedule.h"
+
+namespace tautline::sim {
+namespace {
+
+InputError cannotJoin(const std::string& url) {
+  return InputError(
+      {.key = "--take-faults", .problem = "no LCM at " + url, .remedy = kMulticastRemedy},
+      ExitCode::kTimeout);
+}
+
+/// `url` itself; asked before LCM is, which would answer with a page of text.
+const std::string& reachable(const std::string& url) {
+  if (!hasMulticastRoute(url)) throw cannotJoin(url);
+  return url;
+}
+
+}  // namespace
+
+FaultInbox::FaultInbox(const std::string& lcm_url, SimDevice device)
+    : lcm_(reachable(lcm_url)), device_(device) {
+  if (!lcm_.good()) throw cannotJoin(lcm_url);
+  lcm_.subscribe(channel::kSimFault, &FaultInbox::onFault, this);
+}
+
+void FaultInbox::poll(Simulator& simulator) {
+  simulator_ = &simulator;
+  while (lcm_.handleTimeout(0) > 0) {
+  }
+}
+
+void FaultInbox::onFault(const lcm::ReceiveBuffer*, const std::string&,
+                         const tautline::sim_fault_t* message) {
+  if (message->utime <= last_utime_) return;
+  last_utime_ = message->utime;
+  try {
+    Fault fault = parseFault(message->fault);
+    checkFault(fault, device_, false);
+    fault.at = simulator_->now() + (fault.at - Time{});
+    if (simulator_->inject(fault)) return;
+    throw InputError({.key = describe(fault),
+                      .problem = "too many faults at once",
+                      .allowed = "at most " + std::to_string(kMaxFaults)});
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "tautline-sim: SIM_FAULT refused: %s\n", e.what());
+  }
+}
+
+}  // namespace tautline::sim
