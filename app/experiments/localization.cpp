@@ -193,9 +193,7 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
        .as_published = static_cast<double>(published_lost),
        .tautline = static_cast<double>(our_lost),
        .as_published_band = Band{0.0, 0.0},
-       .tautline_band = Band{0.0, 0.0},
-       .shortfall = "in a steep climb the pull of 0.3 N is taken for a slack tether",
-       .shortfall_limit = Band{0.0, 4.0}},
+       .tautline_band = Band{0.0, 0.0}},
   };
 }
 

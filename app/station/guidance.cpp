@@ -11,6 +11,7 @@ namespace {
 // [m].
 constexpr double kBelowGround = 0.8;
 constexpr Duration kNoLowerFor = std::chrono::seconds(1);
+constexpr Duration kHangs = std::chrono::seconds(60);  // no landing takes so long
 constexpr int kGroundedSamples = 2;
 constexpr Duration kStandsForSure = std::chrono::seconds(10);  // whatever the estimate says
 constexpr double kSmallestDescent = 0.01;                      // [m]
@@ -195,14 +196,17 @@ void Guidance::land(const GuidanceInput& in) noexcept {
     under_way_ = goTo(aboveHome(-kBelowGround), config_.descent_speed_mps, in.estimate);
 }
 
-/// A vehicle that comes down by itself stops its motors by itself; any other is brought down by the
-/// rates.
+/// A vehicle that comes down by itself stops its motors by itself, unless it hangs on a tether that
+/// something holds; any other is brought down by the rates.
 void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcept {
   const TetherAngles& angles = in.sensors->angles.value;
   const bool fresh = in.sensors->angles.valid && !in.conditions.has(Condition::kAnglesStale);
   const RateCommand rates = descent_.update(in.dt, config_.descent_speed_mps, limits_,
                                             fresh ? angles.altitude : std::nullopt);
-  if (in.vehicle != VehiclePhase::kLanding && descent_.onGround()) landing_ = Landing::kStopMotors;
+  if (!descent_.onGround()) not_down_ = in.now;
+  const Duration down_for = in.now - not_down_;
+  if (down_for > (in.vehicle == VehiclePhase::kLanding ? kHangs : Duration::zero()))
+    landing_ = Landing::kStopMotors;
   if (landing_ == Landing::kStopMotors) {
     command.action = paced(VehicleAction::kMotorStop, in.now);
     return;

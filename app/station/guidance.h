@@ -112,6 +112,7 @@ class Guidance {
   double lowest_{0.0};   ///< Least height above home while descending [m].
   Time lowest_since_{};  ///< When that was reached.
   Descent descent_;
+  Time not_down_{};  ///< When the descent last was not on the ground, as far as it can reckon.
   Eigen::Vector3d p_AD_{Eigen::Vector3d::Zero()};  ///< Last that could be trusted [m].
   std::optional<Time> last_action_;
 };
