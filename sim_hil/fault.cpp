@@ -304,7 +304,7 @@ void checkFault(const Fault& fault, SimDevice device, bool on_bench) {
   TAUTLINE_CHECK(kind != nullptr);
   const char* device_name = nameOf(device, kSimDeviceNames);
   if (kind->place == P::kBench && !on_bench)
-    refuse("is not in the machine", "fly it in lock-step: tautline-bench scenario");
+    refuse("is not in the machine", "fly it with tautline-bench scenario");
   if (kind->place == P::kBus && device == SimDevice::kFotokite)
     refuse(std::string("the device \"") + device_name + "\" has no such bus",
            "use device tautline-serial");

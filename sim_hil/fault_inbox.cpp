@@ -27,7 +27,9 @@ const std::string& reachable(const std::string& url) {
 FaultInbox::FaultInbox(const std::string& lcm_url, SimDevice device)
     : lcm_(reachable(lcm_url)), device_(device) {
   if (!lcm_.good()) throw cannotJoin(lcm_url);
-  lcm_.subscribe(channel::kSimFault, &FaultInbox::onFault, this);
+  // Room for all that can be scheduled, each told a few times.
+  constexpr int kQueue = 4 * static_cast<int>(kMaxFaults);
+  lcm_.subscribe(channel::kSimFault, &FaultInbox::onFault, this)->setQueueCapacity(kQueue);
 }
 
 void FaultInbox::poll(Simulator& simulator) {

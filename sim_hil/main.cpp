@@ -170,7 +170,7 @@ std::vector<Fault> chooseFaults(const Options& o, SimDevice device) {
                         .problem = "begins with the station's phase \"" + entry.phase +
                                    "\", which the machine does not know",
                         .remedy = "leave phase out and count at_s from the simulator's start, or "
-                                  "fly it in lock-step: tautline-bench scenario"});
+                                  "fly it with tautline-bench scenario"});
     }
     checkFault(entry.fault, device, false);
     faults.push_back(entry.fault);

@@ -166,7 +166,8 @@ class Expectations {
       const std::optional<Time> began = phases.begin(e.phase);
       if (!began || met_[i] || rig.now() < *began + e.after) continue;
       if (e.kind == Expectation::Kind::kBound) {
-        if (rig.now() < *began + e.after + rig.allowance()) continue;
+        const Duration settle = std::min(rig.allowance(), e.within);
+        if (rig.now() < *began + e.after + settle) continue;
         const double value = e.quantity->of(rig);
         if (!e.range.contains(value)) return failure(e, fmt::format("it was {:.3f}", value));
         met_[i] = rig.now() >= *began + e.after + e.within;

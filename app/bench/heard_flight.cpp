@@ -1,5 +1,8 @@
 #include "app/bench/heard_flight.h"
 
+#include <algorithm>
+#include <array>
+
 #include <Eigen/Core>
 #include <tautline/command_ack_t.hpp>
 #include <tautline/command_t.hpp>
@@ -33,6 +36,14 @@ VehicleCommand ratesOf(const tautline::command_t& m) {
           .gimbal_pitch_rate = m.gimbal_pitch_rate_radps,
           .reel_controller = m.reel_controller != 0,
           .action = static_cast<VehicleAction>(m.action)};
+}
+
+/// Whether a code of a message is one of `names`: another station's need not be.
+template <class Enum, std::size_t n>
+bool isKnown(std::int64_t code, const std::array<EnumName<Enum>, n>& names) {
+  return std::any_of(names.begin(), names.end(), [&](const EnumName<Enum>& name) {
+    return static_cast<std::int64_t>(name.value) == code;
+  });
 }
 
 CommandAck ackOf(const tautline::command_ack_t& m) {
@@ -97,7 +108,7 @@ void HeardFlight::take(std::string_view channel, std::span<const std::uint8_t> b
   const Packet packet{channel, bytes};
   if (const auto m = packet.as<station_input_t>(channel::kStationInput)) next_ = inputOf(*m);
   if (const auto m = packet.as<station_state_t>(channel::kStationState)) {
-    enter(static_cast<Mode>(m->mode));
+    if (isKnown(m->mode, kModeNames)) enter(static_cast<Mode>(m->mode));
     output_.conditions = conditionsOf(m->conditions);
     output_.supervision.reasons = conditionsOf(m->reasons);
   }

@@ -224,9 +224,10 @@ std::string whyOnlyInLockstep(const FlightCase& flight) {
 }
 
 CaseResult runCaseInHil(const FlightCase& flight, TelemetrySink* sink) {
-  CaseResult result = resultOf(flight);
+  CaseResult result;
   const Time began = monotonicNow();
   for (int flights = 1;; ++flights) {
+    result = resultOf(flight);
     HilRig::End end;
     try {
       HilRig rig(flight.bench, sink);

@@ -5,8 +5,7 @@
 /// between them a real pseudo terminal and real LCM on a port of its own (docs/fault_campaign.md,
 /// *On the wall clock*). A step is a cycle of the station, as its messages tell it.
 
-#include <sys/types.h>
-
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>

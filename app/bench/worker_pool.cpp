@@ -82,19 +82,21 @@ class Worker {
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) fail("pipe");
     std::fflush(nullptr);
+    const pid_t parent = ::getpid();
     process_ = ::fork();
     if (process_ < 0) fail("fork");
     if (process_ == 0) {
       ::close(ends[0]);
-      work(ends[1]);
+      work(ends[1], parent);
     }
     ::close(ends[1]);
     input_ = ends[0];
     text_.clear();
   }
 
-  [[noreturn]] void work(int output) {
+  [[noreturn]] void work(int output, pid_t parent) {
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) ::_exit(1);
     for (std::size_t i = next_; i < job_.count; i += stride_) {
       std::string line;
       try {

@@ -142,6 +142,7 @@ nlohmann::json flyPath(const Setup& setup, Primitive primitive, const std::strin
   }
   const std::vector<Eigen::Vector3d> points = resampled(flown, kSpacing);
   nlohmann::json out = {{"completed", flight.result.completed},
+                        {"reasons", flight.reasons},
                         {"mean", flown.empty() ? 0.0 : sum / static_cast<double>(flown.size())},
                         {"max", largest},
                         {"turn", meanTurn(points)},
@@ -157,6 +158,7 @@ nlohmann::json flyPath(const Setup& setup, Primitive primitive, const std::strin
 
 PathFigures pathFigures(const nlohmann::json& json) {
   PathFigures f{.completed = json.at("completed"),
+                .reasons = json.at("reasons"),
                 .mean = json.at("mean"),
                 .max = json.at("max"),
                 .turn = json.at("turn"),

@@ -30,6 +30,7 @@ inline constexpr std::array kIntervals{0.2, 0.5, 1.0, 1.5, 3.0};
 /// A flight along a path: what is kept of it.
 struct PathFigures {
   bool completed{false};
+  std::string reasons;  ///< Conditions that ended the mission.
   double mean{0.0};     ///< Cross-track error, from the first waypoint to the end [m].
   double max{0.0};      ///< [m]
   double turn{0.0};     ///< Smoothness: see meanTurn() [deg].

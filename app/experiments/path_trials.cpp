@@ -10,17 +10,18 @@ namespace {
 
 Sheet pathSheet(const PathTable& table) {
   Sheet sheet{"flights",
-              {"law", "interval_m", "flights", "completed", "trapped", "cross_track_mean_m",
-               "cross_track_worst_flight_m", "cross_track_max_m", "turn_deg", "bulge_m",
-               "longest_at_axis_s"},
+              {"law", "interval_m", "flights", "completed", "broken_off", "trapped",
+               "cross_track_mean_m", "cross_track_worst_flight_m", "cross_track_max_m", "turn_deg",
+               "bulge_m", "longest_at_axis_s"},
               {}};
   for (const Primitive primitive : kPrimitives) {
     for (const PathMeans& m : of(table, primitive)) {
       const auto number = [](double v) { return fmt::format("{:.4f}", v); };
       sheet.rows.push_back({nameOf(primitive), fmt::format("{:g}", m.interval),
                             fmt::format("{}", m.flights), fmt::format("{}", m.completed),
-                            fmt::format("{}", m.trapped), number(m.mean), number(m.worst),
-                            number(m.max), number(m.turn), number(m.bulge), number(m.at_axis)});
+                            m.broken_off, fmt::format("{}", m.trapped), number(m.mean),
+                            number(m.worst), number(m.max), number(m.turn), number(m.bulge),
+                            number(m.at_axis)});
     }
   }
   return sheet;
@@ -92,6 +93,7 @@ PathTable pathTable(const PathPlan& plan, const Results& results) {
         const double share = 1.0 / static_cast<double>(trials);
         ++m.flights;
         m.completed += f.completed ? 1 : 0;
+        if (!f.completed) m.broken_off = f.reasons;
         m.trapped += f.at_axis > kTrapped ? 1 : 0;
         m.mean += share * f.mean;
         m.turn += share * f.turn;

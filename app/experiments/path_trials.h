@@ -26,6 +26,7 @@ struct PathMeans {
   double interval{0.0};  ///< [m]
   std::size_t flights{0};
   std::size_t completed{0};
+  std::string broken_off;  ///< Why the last one that was not completed was broken off.
   double mean{0.0};        ///< Mean of the mean cross-track errors [m].
   double worst{0.0};       ///< Largest of them [m].
   double max{0.0};         ///< Largest cross-track error of all [m].

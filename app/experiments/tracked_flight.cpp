@@ -20,7 +20,7 @@ TrackedFlight flyTracked(const bench::LockstepConfig& config, const MissionPlan&
   Time next{};
   const auto follow = [&](const bench::Lockstep& b) {
     const StepOutput& out = b.output();
-    if (flight.reasons.empty() && !out.supervision.reasons.empty())
+    if (began && flight.reasons.empty() && !out.supervision.reasons.empty())
       flight.reasons = describe(out.supervision.reasons);
     if (out.supervision.mode != Mode::kAuto) {
       if (began && flight.last_mode == Mode::kAuto) flight.last_mode = out.supervision.mode;

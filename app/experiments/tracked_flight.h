@@ -29,7 +29,7 @@ struct TrackPoint {
 struct TrackedFlight {
   bench::FlightResult result;
   Mode last_mode{Mode::kStandby};  ///< When the mission ended.
-  std::string reasons;  ///< First conditions that changed the mode by themselves; empty: none did.
+  std::string reasons;  ///< First conditions that ended the mission by themselves; empty: none did.
   std::vector<TrackPoint> track;  ///< 20 a second, from NAVIGATE to the end of the mission.
 };
 

@@ -9,6 +9,9 @@ namespace {
 
 using C = Condition;
 
+// The lean is no witness of the pull if it may be wrong by more than this part of it.
+constexpr double kLeanTells = 0.5;
+
 /// A stream's newest sample may be used.
 template <class T>
 bool isGood(const Sample<T>& sample, const StreamHealth& health) noexcept {
@@ -115,8 +118,12 @@ void ConditionMonitor::watchTether(const MonitorInput& in) noexcept {
   t.phi = e.phi;
   t.lean_angle = lean_.angle();
   if ((*in.health)[SensorStream::kAttitude].ok()) t.T_lean = lean_.tension();
-  if (t.T_lean)
+  if (t.T_lean) {
     t.T_lean_error = lean_.tensionError(*t.T_lean, config_.detect.tether.lean_error_rad);
+    // Under a steep tether a pull of nothing and one as usual may look alike.
+    const double usual = config_.localizer.nominal_tension_n;
+    if (t.T_lean_error > kLeanTells * std::max(*t.T_lean, usual)) t.T_lean.reset();
+  }
   if (reel.ok()) t.T_reel = f.reel.value.tension;
   t.w = config_.localizer.tether_weight_n_per_m;
   if (in.last_command->engaged) {

@@ -7,14 +7,13 @@
 namespace tautline {
 namespace {
 
-// The descent aims so far below home that it ends on the ground, whatever the estimate is off by
-// [m].
+// A landing aims so far below home that it ends on the ground, whatever the estimate is off by [m].
 constexpr double kBelowGround = 0.8;
-constexpr Duration kNoLowerFor = std::chrono::seconds(1);
-constexpr Duration kHangs = std::chrono::seconds(60);  // no landing takes so long
+constexpr Duration kLevelFor = std::chrono::seconds(1);
+constexpr double kStandsStill = 1.0 / 3.0;             // of a descent's way in that time
+constexpr Duration kHangs = std::chrono::seconds(60);  // or twice the descent, whichever is longer
 constexpr int kGroundedSamples = 2;
 constexpr Duration kStandsForSure = std::chrono::seconds(10);  // whatever the estimate says
-constexpr double kSmallestDescent = 0.01;                      // [m]
 constexpr double kAllTheWay = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -111,6 +110,8 @@ void Guidance::enter(const GuidanceInput& in) noexcept {
       break;
     case Mode::kDescend:
       landing_ = Landing::kDescend;
+      descending_since_ = in.now;
+      down_since_.reset();
       descent_.begin(p_AD_, (contacts_.anchor().p_WA + p_AD_ - config_.home_position_m).y());
       break;
     default:
@@ -182,8 +183,8 @@ void Guidance::land(const GuidanceInput& in) noexcept {
   } else if (landing_ == Landing::kApproach && arrived) {
     landing_ = Landing::kDescend;
     under_way_ = false;
-    lowest_ = in.estimate.p_WD.y() - config_.home_position_m.y();
-    lowest_since_ = in.now;
+    level_ = in.estimate.p_WD.y() - config_.home_position_m.y();
+    level_since_ = in.now;
   } else if (landing_ == Landing::kDescend && onGround(in)) {
     landing_ = Landing::kStopMotors;
     executor_.abort();
@@ -192,8 +193,12 @@ void Guidance::land(const GuidanceInput& in) noexcept {
   if (under_way_) return;
   if (landing_ == Landing::kApproach)
     under_way_ = goTo(aboveHome(config_.approach_height_m), config_.travel_speed_mps, in.estimate);
-  if (landing_ == Landing::kDescend)
-    under_way_ = goTo(aboveHome(-kBelowGround), config_.descent_speed_mps, in.estimate);
+  if (landing_ == Landing::kDescend) {
+    double depth = kBelowGround;
+    const auto reach = [&] { return contacts_.effective(aboveHome(-depth)).L_total; };
+    while (depth > 0.1 && reach() > limits_.tether_length_m) depth *= 0.5;
+    under_way_ = goTo(aboveHome(-depth), config_.descent_speed_mps, in.estimate);
+  }
 }
 
 /// A vehicle that comes down by itself stops its motors by itself, unless it hangs on a tether that
@@ -203,10 +208,12 @@ void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcep
   const bool fresh = in.sensors->angles.valid && !in.conditions.has(Condition::kAnglesStale);
   const RateCommand rates = descent_.update(in.dt, config_.descent_speed_mps, limits_,
                                             fresh ? angles.altitude : std::nullopt);
-  if (!descent_.onGround()) not_down_ = in.now;
-  const Duration down_for = in.now - not_down_;
-  if (down_for > (in.vehicle == VehiclePhase::kLanding ? kHangs : Duration::zero()))
-    landing_ = Landing::kStopMotors;
+  if (descent_.onGround()) {
+    if (!down_since_) down_since_ = in.now;
+    const bool hangs =
+        in.now - *down_since_ > std::max(kHangs, 2 * (*down_since_ - descending_since_));
+    if (in.vehicle != VehiclePhase::kLanding || hangs) landing_ = Landing::kStopMotors;
+  }
   if (landing_ == Landing::kStopMotors) {
     command.action = paced(VehicleAction::kMotorStop, in.now);
     return;
@@ -216,16 +223,17 @@ void Guidance::descend(const GuidanceInput& in, VehicleCommand& command) noexcep
   command.elevation_rate = rates.elevation_rate;
 }
 
-/// By what no estimate can be wrong about: told to go lower it does not. A height alone would stop
-/// the motors in the air where the estimate is too low.
+/// Told to go lower it does not. A height alone would stop the motors in the air where the estimate
+/// is too low.
 bool Guidance::onGround(const GuidanceInput& in) noexcept {
   const double height = in.estimate.p_WD.y() - config_.home_position_m.y();
-  // One that stands still comes no lower either.
-  if (height < lowest_ - kSmallestDescent || in.conditions.any(kStandStill)) {
-    lowest_ = height;
-    lowest_since_ = in.now;
+  const double still = kStandsStill * config_.descent_speed_mps * toSeconds(kLevelFor);
+  // One that is told to stand still comes no lower either.
+  if (std::abs(height - level_) > still || in.conditions.any(kStandStill)) {
+    level_ = height;
+    level_since_ = in.now;
   }
-  return height < config_.touchdown_height_m && in.now - lowest_since_ > kNoLowerFor;
+  return height < config_.touchdown_height_m && in.now - level_since_ > kLevelFor;
 }
 
 bool Guidance::goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& estimate) noexcept {

@@ -109,10 +109,11 @@ class Guidance {
   bool gave_up_{false};      ///< On the ground in a fault of the vehicle.
   std::uint32_t vehicle_sequence_{0};
   Landing landing_{Landing::kApproach};
-  double lowest_{0.0};   ///< Least height above home while descending [m].
-  Time lowest_since_{};  ///< When that was reached.
+  double level_{0.0};   ///< Height above home about which a landing has stood still [m] ...
+  Time level_since_{};  ///< ... since then.
   Descent descent_;
-  Time not_down_{};  ///< When the descent last was not on the ground, as far as it can reckon.
+  Time descending_since_{};                        ///< In DESCEND.
+  std::optional<Time> down_since_;                 ///< When the descent first took itself for down.
   Eigen::Vector3d p_AD_{Eigen::Vector3d::Zero()};  ///< Last that could be trusted [m].
   std::optional<Time> last_action_;
 };

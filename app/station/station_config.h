@@ -59,8 +59,8 @@ struct GuidanceConfig {
             "landing descends from this height above home");
     v.field("travel_speed_mps", travel_speed_mps, Range{0.01, 5},
             "speed to the hover point and back home");
-    v.field("descent_speed_mps", descent_speed_mps, Range{0.01, 2}, "speed of the last descent");
-    v.field("touchdown_height_m", touchdown_height_m, Range{0.0, 1},
+    v.field("descent_speed_mps", descent_speed_mps, Range{0.05, 2}, "speed of the last descent");
+    v.field("touchdown_height_m", touchdown_height_m, Range{0.1, 1},
             "on the ground: below this height above home and no lower for a second");
     v.field("action_period_s", action_period_s, Range{0.1, 10},
             "take-off and motor stop are repeated this often");

@@ -130,12 +130,14 @@ TEST(SensorHealth, AReadingThatDoesNotFollowItsCommandIsStuck) {
 TEST(SensorHealth, FindsStepsThatNothingCanMake) {
   SensorMonitor monitor{SensorHealthConfig{}};
   SensorFrame frame;
-  frame.vehicle = {.value = {.phase = VehiclePhase::kFlying}, .sequence = 1, .valid = true};
+  frame.vehicle.value.phase = VehiclePhase::kFlying;
+  frame.vehicle.sequence = 1;
   Time now{};
   const auto sample = [&](double length, double theta, double phi, double period) {
     now += fromSeconds(period);
     frame.reel.value.length = length;
-    frame.angles.value = {.theta = theta, .phi = phi};
+    frame.angles.value.theta = theta;
+    frame.angles.value.phi = phi;
     frame.reel.time = frame.angles.time = now;
     frame.reel.valid = frame.angles.valid = true;
     ++frame.reel.sequence;

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "supervision/detect/contact_watch.h"
-#include "supervision/detect/jump_detector.h"
 #include "supervision/detect/oscillation_watch.h"
 #include "supervision/detect/tether_watch.h"
 

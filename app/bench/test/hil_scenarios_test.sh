@@ -68,7 +68,7 @@ for signal in INT KILL; do
   pgrep -f "$work/tautline-hil.*station.toml" >/dev/null || fail "no station came up"
   kill -$signal "$bench"
   wait "$bench" 2>/dev/null
-  for _ in $(seq 100); do pgrep -f "$work/tautline-hil" >/dev/null || break; sleep 0.1; done
+  for _ in $(seq 100); do pgrep -f "$work/tautline-hil" >/dev/null || compgen -G "$work/tautline-hil*" >/dev/null || break; sleep 0.1; done
 done
 left=$(pgrep -af "$work/tautline-hil"; ls -d "$work"/tautline-hil* 2>/dev/null)
 [[ -z $left ]] || fail "left behind: $left"

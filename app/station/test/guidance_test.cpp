@@ -28,16 +28,16 @@ class GuidanceTest : public ::testing::Test {
     for (const Time end = now_ + d; now_ < end;) {
       now_ += dt;
       sensors_.vehicle.sequence += 1;
-      output_ = guidance_.update({.now = now_,
-                                  .dt = dt,
-                                  .mode = mode_,
-                                  .entered = entered_,
-                                  .estimate = plant_.measure(),
-                                  .vehicle = phase_,
-                                  .sensors = &sensors_,
-                                  .plan = plan_.get(),
-                                  .conditions = conditions_,
-                                  .teleop = sticks_});
+      output_ = guidance_->update({.now = now_,
+                                   .dt = dt,
+                                   .mode = mode_,
+                                   .entered = entered_,
+                                   .estimate = estimate(),
+                                   .vehicle = phase_,
+                                   .sensors = &sensors_,
+                                   .plan = plan_.get(),
+                                   .conditions = conditions_,
+                                   .teleop = sticks_});
       entered_ = false;
       RateCommand rates;
       if (output_.route.active) {
@@ -48,16 +48,28 @@ class GuidanceTest : public ::testing::Test {
                  .elevation_rate = output_.command.elevation_rate,
                  .azimuth_rate = output_.command.azimuth_rate};
       }
-      plant_.step(rates);
+      if (height() > floor_) plant_.step(rates);
     }
+  }
+  [[nodiscard]] Estimate estimate() {
+    Estimate e = plant_.measure();
+    e.p_WD.y() += too_high_;
+    return e;
   }
   void takeOff() {
     enter(Mode::kArmed);
     phase_ = VehiclePhase::kFlying;
     enter(Mode::kTakeoff);
     step(std::chrono::seconds(10));
-    EXPECT_TRUE(guidance_.conditions().has(Condition::kAtTarget));
+    EXPECT_TRUE(guidance_->conditions().has(Condition::kAtTarget));
     enter(Mode::kHold);
+  }
+  [[nodiscard]] std::unique_ptr<Guidance> makeGuidance() const {
+    return std::make_unique<Guidance>(config_.guidance, config_.executor,
+                                      config_.control.composite.pole, plant_config_.limits);
+  }
+  [[nodiscard]] double height() const {
+    return (plant_.position() - config_.guidance.home_position_m).y();
   }
   [[nodiscard]] Eigen::Vector3d aboveHome() const {
     return config_.guidance.home_position_m +
@@ -68,8 +80,7 @@ class GuidanceTest : public ::testing::Test {
   PlantConfig plant_config_{.noise = 0.1};
   KinematicPlant plant_{plant_config_, config_.guidance.home_position_m + Eigen::Vector3d(0, .3, 0),
                         1};
-  Guidance guidance_{config_.guidance, config_.executor, config_.control.composite.pole,
-                     plant_config_.limits};
+  std::unique_ptr<Guidance> guidance_ = makeGuidance();
   std::unique_ptr<Controller> law_ = makeController(config_.control);
   SensorFrame sensors_;
   GuidanceOutput output_;
@@ -79,6 +90,8 @@ class GuidanceTest : public ::testing::Test {
   ConditionSet conditions_;
   std::optional<TeleopRates> sticks_;
   std::unique_ptr<MissionPlan> plan_;
+  double too_high_{0.0};  ///< The estimate [m].
+  double floor_{-10.0};   ///< Height above home where the plant stays for good [m].
   Time now_{};
 };
 
@@ -111,15 +124,16 @@ TEST_F(GuidanceTest, TeleopIsTheSticksAndWithoutThemAHover) {
 
 TEST_F(GuidanceTest, AMissionEndsAtItsLastViewpointAndGoesOnLooking) {
   config_.executor.acceptance_floor_m = 0.4;
+  guidance_ = makeGuidance();
   plan_ = std::make_unique<MissionPlan>();
   plan_->waypoint_count = 1;
   plan_->waypoints[0].p_WD = aboveHome() + Eigen::Vector3d(0.5, 0.4, 0.8);
   plan_->waypoints[0].p_WL = Eigen::Vector3d(3.0, 0.0, 3.0);
   takeOff();
   enter(Mode::kAuto);
-  for (int i = 0; i < 60 && !guidance_.conditions().has(Condition::kMissionDone); ++i)
+  for (int i = 0; i < 60 && !guidance_->conditions().has(Condition::kMissionDone); ++i)
     step(std::chrono::milliseconds(500));
-  ASSERT_TRUE(guidance_.conditions().has(Condition::kMissionDone));
+  ASSERT_TRUE(guidance_->conditions().has(Condition::kMissionDone));
   EXPECT_GT((plant_.position() - plan_->waypoints[0].p_WD).norm(), 0.2) << "near enough";
   enter(Mode::kHold);
   sensors_.attitude.valid = true;
@@ -146,9 +160,9 @@ TEST_F(GuidanceTest, ReturnsTheWayTheSticksFlew) {
   }
   sticks_.reset();
   enter(Mode::kReturn);
-  for (int i = 0; i < 60 && !guidance_.conditions().has(Condition::kAtTarget); ++i)
+  for (int i = 0; i < 60 && !guidance_->conditions().has(Condition::kAtTarget); ++i)
     step(std::chrono::seconds(1));
-  EXPECT_TRUE(guidance_.conditions().has(Condition::kAtTarget));
+  EXPECT_TRUE(guidance_->conditions().has(Condition::kAtTarget));
   EXPECT_LT((plant_.position() - aboveHome()).norm(), 0.3);
 }
 
@@ -162,7 +176,7 @@ TEST_F(GuidanceTest, BacksUpByItsDistance) {
   const Eigen::Vector3d before = plant_.position();
   enter(Mode::kBackUp);
   step(std::chrono::seconds(15));
-  EXPECT_TRUE(guidance_.conditions().has(Condition::kAtTarget));
+  EXPECT_TRUE(guidance_->conditions().has(Condition::kAtTarget));
   EXPECT_NEAR((plant_.position() - before).norm(), config_.guidance.back_up_m, 0.25);
 }
 
@@ -170,13 +184,13 @@ TEST_F(GuidanceTest, WithoutATakeoffNoWayBackIsKnown) {
   phase_ = VehiclePhase::kFlying;  // a station that was restarted in flight
   enter(Mode::kHold);
   step(std::chrono::seconds(3));
-  EXPECT_FALSE(guidance_.knowsWayBack());
-  EXPECT_FALSE(guidance_.conditions().has(Condition::kMissionFailed));
+  EXPECT_FALSE(guidance_->knowsWayBack());
+  EXPECT_FALSE(guidance_->conditions().has(Condition::kMissionFailed));
   const Eigen::Vector3d before = plant_.position();
   enter(Mode::kReturn);
   step(std::chrono::seconds(5));
-  EXPECT_TRUE(guidance_.conditions().has(Condition::kMissionFailed));
-  EXPECT_FALSE(guidance_.conditions().has(Condition::kAtTarget));
+  EXPECT_TRUE(guidance_->conditions().has(Condition::kMissionFailed));
+  EXPECT_FALSE(guidance_->conditions().has(Condition::kAtTarget));
   EXPECT_LT((plant_.position() - before).norm(), 0.1);
 }
 
@@ -216,18 +230,56 @@ TEST_F(GuidanceTest, LeavesTheMotorsToAVehicleThatLandsByItself) {
   }
 }
 
+TEST_F(GuidanceTest, StopsTheMotorsOfAVehicleThatHangsAndNeverEndsItsLanding) {
+  for (int flight = 0; flight < 2; ++flight) {
+    takeOff();
+    phase_ = VehiclePhase::kLanding;
+    enter(Mode::kDescend);
+    const auto stopped = [&] { return output_.command.action == VehicleAction::kMotorStop; };
+    double waited = 0.0;
+    for (; waited < 200.0 && !stopped(); waited += kPlantStep) step();
+    EXPECT_GT(waited, 60.0) << "flight " << flight;
+    EXPECT_LT(waited, 100.0) << "flight " << flight;
+    plant_ = KinematicPlant(plant_config_,
+                            config_.guidance.home_position_m + Eigen::Vector3d(0, .3, 0), 1);
+    phase_ = VehiclePhase::kIdle;
+    enter(Mode::kStandby);
+  }
+}
+
+TEST_F(GuidanceTest, TheFloorEndsALandingAndNotAHeight) {
+  for (const double too_high : {-0.4, 0.0, 0.2}) {
+    SCOPED_TRACE(too_high);
+    too_high_ = 0.0;
+    floor_ = -10.0;
+    takeOff();
+    too_high_ = too_high;
+    floor_ = 0.0;
+    enter(Mode::kLand);
+    double on_floor = 0.0;
+    for (double waited = 0.0; waited < 60.0; waited += kPlantStep) {
+      step();
+      if (output_.command.action == VehicleAction::kMotorStop) break;
+      if (height() <= floor_) on_floor += kPlantStep;
+    }
+    EXPECT_EQ(output_.command.action, VehicleAction::kMotorStop);
+    EXPECT_LE(height(), floor_) << "not in the air";
+    EXPECT_LT(on_floor, 2.0);
+    plant_ = KinematicPlant(plant_config_,
+                            config_.guidance.home_position_m + Eigen::Vector3d(0, .3, 0), 1);
+    phase_ = VehiclePhase::kIdle;
+    enter(Mode::kStandby);
+  }
+}
+
 TEST_F(GuidanceTest, DescendsFromWhereATakeoffHasCome) {
   enter(Mode::kArmed);
   phase_ = VehiclePhase::kFlying;
   enter(Mode::kTakeoff);
   step(std::chrono::seconds(10));
   enter(Mode::kDescend);
-  double height = 0.0;
-  while (output_.command.action != VehicleAction::kMotorStop) {
-    step();
-    height = (plant_.position() - config_.guidance.home_position_m).y();
-  }
-  EXPECT_LT(height, 0.0);
+  while (output_.command.action != VehicleAction::kMotorStop) step();
+  EXPECT_LT(height(), 0.0);
 }
 
 }  // namespace
