@@ -350,9 +350,7 @@ Findings judge(const Setup& setup, const Results& results) {
                            .as_published = 100.0 * completed / flown,
                            .tautline = 100.0 * completed_ours / flown,
                            .as_published_band = Band{100.0, 100.0},
-                           .tautline_band = Band{100.0, 100.0},
-                           .shortfall = "broken off where a contact forms or comes off",
-                           .shortfall_limit = Band{.min = 85.0}});
+                           .tautline_band = Band{100.0, 100.0}});
   findings.sheets.push_back(tableOf(setup, results));
   addPictures(setup, results, findings);
   return findings;
