@@ -90,7 +90,11 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
   findings_.report(C::kAnglesStuck, angles.has(SensorFault::kStuck));
 
   findings_.reportAbove(C::kReelJump, reel.step, reel.step_allowed);
-  findings_.reportAbove(C::kAnglesJump, angles.step, angles.step_allowed);
+  // Where the floor carries the drone, its tether may go slack and swing.
+  const double height = in.estimate->p_WD.y() - config_.guidance.home_position_m.y();
+  const bool touches_down = in.mode == Mode::kLand && in.estimate->usable() &&
+                            height < config_.guidance.touchdown_height_m;
+  if (!touches_down) findings_.reportAbove(C::kAnglesJump, angles.step, angles.step_allowed);
 
   const SensorFrame& f = *in.sensors;
   if (isGood(f.reel, reel)) L_total_ = f.reel.value.length;

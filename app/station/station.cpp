@@ -144,7 +144,13 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   if (!guidance.route.active) return command;
   const RateCommand rates = controller_->update(dt, guidance.route.control);
   if (!rates.ok) return command;
-  command.length_rate = rates.length_rate;
+  // Where a landing may meet the floor at any moment nothing is paid out: on the floor the tether
+  // would go slack and swing.
+  const double home = config_.guidance.home_position_m.y();
+  const bool touches_down = out_.supervision.mode == Mode::kLand &&
+                            guidance.route.control.p_WE.y() < home &&
+                            out_.estimate.p_WD.y() < home + config_.guidance.touchdown_height_m;
+  command.length_rate = touches_down ? std::min(rates.length_rate, 0.0) : rates.length_rate;
   command.elevation_rate = rates.elevation_rate;
   command.azimuth_rate = rates.azimuth_rate;
   command.yaw_rate = guidance.route.yaw_rate;
