@@ -10,6 +10,10 @@ namespace {
 // A landing aims so far below home that it ends on the ground, whatever the estimate is off by [m].
 constexpr double kBelowGround = 0.8;
 constexpr Duration kLevelFor = std::chrono::seconds(1);
+// Higher than this above home by the estimate a drone that stands still may as well have been
+// stopped in the air, by its reel or a lost command: it takes longer [m].
+constexpr double kAtHome = 0.1;
+constexpr Duration kLevelForHigher = std::chrono::seconds(4);
 constexpr double kStandsStill = 1.0 / 3.0;             // of a descent's way in that time
 constexpr Duration kHangs = std::chrono::seconds(60);  // or twice the descent, whichever is longer
 constexpr int kGroundedSamples = 2;
@@ -233,7 +237,8 @@ bool Guidance::onGround(const GuidanceInput& in) noexcept {
     level_ = height;
     level_since_ = in.now;
   }
-  return height < config_.touchdown_height_m && in.now - level_since_ > kLevelFor;
+  return height < config_.touchdown_height_m &&
+         in.now - level_since_ > (height < kAtHome ? kLevelFor : kLevelForHigher);
 }
 
 bool Guidance::goTo(const Eigen::Vector3d& p_WD, double speed, const Estimate& estimate) noexcept {
