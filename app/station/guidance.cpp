@@ -13,7 +13,7 @@ constexpr Duration kLevelFor = std::chrono::seconds(1);
 // Higher than this above home by the estimate a drone that stands still may as well have been
 // stopped in the air, by its reel or a lost command: it takes longer [m].
 constexpr double kAtHome = 0.1;
-constexpr Duration kLevelForHigher = std::chrono::seconds(4);
+constexpr Duration kLevelForHigher = std::chrono::seconds(8);
 constexpr double kStandsStill = 1.0 / 3.0;             // of a descent's way in that time
 constexpr Duration kHangs = std::chrono::seconds(60);  // or twice the descent, whichever is longer
 constexpr int kGroundedSamples = 2;
