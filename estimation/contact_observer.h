@@ -9,7 +9,8 @@
 /// turn, and that is felt: the lean sideways accelerates the drone, and what it accelerates by,
 /// divided by how much faster the azimuth turns, is the lever. Hypotheses about the lever are
 /// judged by the likelihood ratio of what the lean and the turning of the tether say about the
-/// sideways velocity.
+/// sideways velocity. Of a contact that slides along its edge the lever says nothing; the barometer
+/// does, unless the edge is level: the drone is not as high as it is reckoned to be.
 
 #include <array>
 #include <cstdint>
@@ -21,6 +22,7 @@
 #include "common/estimate.h"
 #include "common/fields.h"
 #include "common/time.h"
+#include "estimation/height_witness.h"
 
 namespace tautline {
 
@@ -30,12 +32,14 @@ enum class TetherHypothesis : std::uint8_t {
   kNotFormed,  ///< The anchor before it: the planned contact is not there (yet).
   kLost,       ///< Not the active anchor, which was seen to hold: the tether has come off.
   kUnplanned,  ///< A point between anchor and drone that nobody planned.
+  kSlipped,    ///< The active anchor, which has slid along its edge.
 };
-inline constexpr std::array<EnumName<TetherHypothesis>, 4> kTetherHypothesisNames{
+inline constexpr std::array<EnumName<TetherHypothesis>, 5> kTetherHypothesisNames{
     {{TetherHypothesis::kHolds, "holds"},
      {TetherHypothesis::kNotFormed, "not formed"},
      {TetherHypothesis::kLost, "lost"},
-     {TetherHypothesis::kUnplanned, "unplanned"}}};
+     {TetherHypothesis::kUnplanned, "unplanned"},
+     {TetherHypothesis::kSlipped, "slipped"}}};
 
 struct ContactObserverConfig {
   double smoothing_rate_hz{1.0};
@@ -53,6 +57,8 @@ struct ContactObserverConfig {
   double form_s{0.9};
   double longest_period_s{0.06};
   double least_tension_n{0.4};
+  double slip_m{0.2};
+  HeightWitnessConfig height;
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -82,6 +88,8 @@ struct ContactObserverConfig {
             "slower angles or attitude show no accelerations: nothing is judged");
     v.field("least_tension_n", least_tension_n, Range{0, 100},
             "a tether with less nominal tension moves otherwise than its end: nothing is judged");
+    v.field("slip_m", slip_m, Range{0.02, 10}, "up or down along a contact's edge that is told");
+    v.section("height", height);
   }
 };
 
@@ -90,11 +98,14 @@ struct ContactObserverInput {
   bool flying{false};   ///< In the air, with sensors and an estimate that may be used.
   double L_total{0.0};  ///< True metres, so times the reel scale [m].
   double theta{0.0};    ///< Tangent elevation at D [rad].
+  double sag{0.0};      ///< By how much the chord's is less [rad].
   double phi{0.0};      ///< [rad]
   Eigen::Quaterniond R_WB{Eigen::Quaterniond::Identity()};
-  double T{0.0};  ///< At D [N].
-  double G{6.0};  ///< Weight of the vehicle [N].
-  Anchor anchor;  ///< The active one.
+  double T{0.0};                     ///< At D [N].
+  double G{6.0};                     ///< Weight of the vehicle [N].
+  Anchor anchor;                     ///< The active one.
+  std::optional<double> height;      ///< Barometric, in W [m], where sensed.
+  std::uint32_t height_sequence{0};  ///< Of its reading.
 };
 
 struct ContactVerdict {
@@ -102,6 +113,7 @@ struct ContactVerdict {
   double evidence{0.0};  ///< Of the most likely hypothesis but kHolds, over what it takes: 1.
   double lever{0.0};     ///< From the drone to what the tether turns about, under it [m].
   Eigen::Vector3d p_WC{Eigen::Vector3d::Zero()};  ///< Where that is.
+  double slip{0.0};                               ///< Upwards, of kSlipped [m].
 };
 
 /// A vector signal x through lambda^2/(s + lambda)^2/(s + a), and its first two derivatives so.
@@ -137,9 +149,11 @@ class ContactObserver {
 
   void changeAnchor(Time now, const ContactObserverInput& in, const Eigen::Vector3d& d) noexcept;
   [[nodiscard]] const Eigen::Vector3d* anchorBelow() const noexcept;
+  void readHeight(Time now, const ContactObserverInput& in, double L) noexcept;
+  void forgetEvidence() noexcept;
   void judge(Time now, double dt, double L) noexcept;
   void decide(const ContactObserverInput& in, const Eigen::Vector3d& d, double L) noexcept;
-  [[nodiscard]] double evidenceOf(double extra, double L) const noexcept;
+  [[nodiscard]] double evidenceOf(double extra, double dt, double L) const noexcept;
 
   ContactObserverConfig config_;
   double lambda_, a_, threshold_;
@@ -151,12 +165,16 @@ class ContactObserver {
   Anchor anchor_;
   Eigen::Vector3d offset_{Eigen::Vector3d::Zero()};
   BandFilter p_, d_, f_;
+  HeightWitness height_;
   double bias_{0.0};
   double residual_{0.0};
   double turning_{0.0};
   double before_{0.0};  ///< Evidence for the anchor before the active one, ...
   double holds_{0.0};   ///< ... against it, ...
-  std::array<double, kUnplannedShares.size()> unplanned_{};  ///< ... for a contact at each share.
+  std::array<double, kUnplannedShares.size()>
+      unplanned_{};   ///< ... for a contact at each share, ...
+  double up_{0.0};    ///< ... for a slip upwards, ...
+  double down_{0.0};  ///< ... and downwards.
   ContactVerdict verdict_;
 };
 

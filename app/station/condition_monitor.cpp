@@ -1,5 +1,7 @@
 #include "app/station/condition_monitor.h"
 
+#include <cmath>
+
 #include "app/station/station_config.h"
 #include "app/station/vehicle_signs.h"
 #include "common/tether_geometry.h"
@@ -91,9 +93,8 @@ void ConditionMonitor::watchSensors(const MonitorInput& in) noexcept {
 
   findings_.reportAbove(C::kReelJump, reel.step, reel.step_allowed);
   // Where the floor carries the drone, its tether may go slack and swing.
-  const double height = in.estimate->p_WD.y() - config_.guidance.home_position_m.y();
   const bool touches_down = in.mode == Mode::kLand && in.estimate->usable() &&
-                            height < config_.guidance.touchdown_height_m;
+                            config_.guidance.isNearFloor(in.estimate->p_WD);
   if (!touches_down) findings_.reportAbove(C::kAnglesJump, angles.step, angles.step_allowed);
 
   const SensorFrame& f = *in.sensors;
@@ -191,12 +192,19 @@ void ConditionMonitor::watchContact(const MonitorInput& in) noexcept {
   o.T = e.T;
   o.G = config_.localizer.vehicle_weight_n;
   o.anchor = *in.anchor;
+  const Eigen::Vector3d chord = e.p_WD - in.anchor->p_WA;
+  o.sag = e.theta_tangent - std::atan2(chord.y(), std::hypot(chord.x(), chord.z()));
+  o.height_sequence = f.angles.sequence;
+  if (config_.localizer.noise.use_altitude && f.angles.value.altitude)
+    o.height = config_.guidance.home_position_m.y() + *f.angles.value.altitude;
   const ContactVerdict& verdict = observer_.update(in.now, o);
   const auto report = [&](C condition, TetherHypothesis hypothesis) {
     findings_.report(condition, verdict.hypothesis == hypothesis, verdict.evidence, 1.0);
   };
   report(C::kContactLost, TetherHypothesis::kLost);
   report(C::kContactNotFormed, TetherHypothesis::kNotFormed);
+  findings_.report(C::kContactSlipped, verdict.hypothesis == TetherHypothesis::kSlipped,
+                   std::abs(verdict.slip), c.slip_m);
   if (verdict.hypothesis == TetherHypothesis::kUnplanned)
     findings_.report(C::kUnplannedContact, true, verdict.evidence, 1.0);
 }

@@ -81,8 +81,7 @@ void Guidance::watchVehicle(const GuidanceInput& in) noexcept {
   if (!stands || in.entered) grounded_samples_ = 0;
   if (stands && in.sensors->vehicle.sequence != vehicle_sequence_) ++grounded_samples_;
   if (flies || in.entered) not_flying_since_ = in.now;
-  const double height = in.estimate.p_WD.y() - config_.home_position_m.y();
-  const bool in_the_air = in.estimate.usable() && height > config_.touchdown_height_m;
+  const bool in_the_air = in.estimate.usable() && !config_.isNearFloor(in.estimate.p_WD);
   const bool for_long = in.now - not_flying_since_ > kStandsForSure;
   stands_ = grounded_samples_ >= kGroundedSamples && (!in_the_air || for_long);
   gave_up_ = in.vehicle == VehiclePhase::kFault && !in_the_air && for_long;
@@ -237,7 +236,7 @@ bool Guidance::onGround(const GuidanceInput& in) noexcept {
     level_ = height;
     level_since_ = in.now;
   }
-  return height < config_.touchdown_height_m &&
+  return config_.isNearFloor(in.estimate.p_WD) &&
          in.now - level_since_ > (height < kAtHome ? kLevelFor : kLevelForHigher);
 }
 

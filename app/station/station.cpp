@@ -146,10 +146,10 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   if (!rates.ok) return command;
   // Where a landing may meet the floor at any moment nothing is paid out: on the floor the tether
   // would go slack and swing.
-  const double home = config_.guidance.home_position_m.y();
-  const bool touches_down = out_.supervision.mode == Mode::kLand &&
-                            guidance.route.control.p_WE.y() < home &&
-                            out_.estimate.p_WD.y() < home + config_.guidance.touchdown_height_m;
+  const bool touches_down =
+      out_.supervision.mode == Mode::kLand &&
+      guidance.route.control.p_WE.y() < config_.guidance.home_position_m.y() &&
+      config_.guidance.isNearFloor(out_.estimate.p_WD);
   command.length_rate = touches_down ? std::min(rates.length_rate, 0.0) : rates.length_rate;
   command.elevation_rate = rates.elevation_rate;
   command.azimuth_rate = rates.azimuth_rate;

@@ -61,12 +61,17 @@ struct GuidanceConfig {
             "speed to the hover point and back home");
     v.field("descent_speed_mps", descent_speed_mps, Range{0.05, 2}, "speed of the last descent");
     v.field("touchdown_height_m", touchdown_height_m, Range{0.1, 1},
-            "on the ground: below this height above home and no lower for a second");
+            "below this height above home it may stand: on the ground once it comes no lower");
     v.field("action_period_s", action_period_s, Range{0.1, 10},
             "take-off and motor stop are repeated this often");
     v.field("back_up_m", back_up_m, Range{0.1, 100}, "way back along the flown path in BACKUP");
     v.field("slack_reel_in_mps", slack_reel_in_mps, Range{0.0, 1},
             "reel-in in FAILSAFE while the tether is slack");
+  }
+
+  /// So low that it may stand on the floor. Real-time safe: no allocation, no locks, no exceptions.
+  [[nodiscard]] bool isNearFloor(const Eigen::Vector3d& p_WD) const noexcept {
+    return p_WD.y() < home_position_m.y() + touchdown_height_m;
   }
 };
 

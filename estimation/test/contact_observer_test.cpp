@@ -30,6 +30,7 @@ class Swing {
   Vector3d pivot{Vector3d::Zero()};
   double L{2.0};      // pivot to drone [m]
   double omega{0.0};  // wanted, of the azimuth [rad/s]
+  bool barometer{false};
 
   /// Another pivot on the present tether line, `share` of the free length from the drone: the place
   /// and the speed stay.
@@ -73,6 +74,10 @@ class Swing {
     in.T = 1.2 * kPull;  // nor is the pull known well
     in.G = kMass * kGravity;
     in.anchor = anchor;
+    if (!barometer) return in;
+    if (cycles_ % 4 == 0) height_ = place().y() + 0.4 + 0.1 * normal();
+    in.height = height_;
+    in.height_sequence = static_cast<std::uint32_t>(cycles_ / 4);
     return in;
   }
   [[nodiscard]] Vector3d direction() const {
@@ -105,6 +110,7 @@ class Swing {
   double goal_theta_{0.0};
   double coming_off_{0.0};
   int cycles_{0};
+  double height_{0.0};  // barometric, of the last reading, off by what nobody knows
   Vector3d p_before_{Vector3d::Zero()};
   Vector3d p_now_{Vector3d::Zero()};
   Vector3d p_next_{Vector3d::Zero()};
@@ -201,6 +207,48 @@ TEST(ContactObserver, AContactThatFormsIsBelievedAndItsLossIsTold) {
     ASSERT_TRUE(delay) << seed;
     EXPECT_LE(*delay, 1.0) << seed;
     EXPECT_EQ(w.verdict.hypothesis, TetherHypothesis::kLost) << seed;
+  }
+}
+
+TEST(ContactObserver, ASlipAlongAnUprightEdgeIsToldWithItsSize) {
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    for (const double slip : {0.3, -0.3}) {
+      Swing swing(seed);
+      swing.barometer = true;
+      Watched w;
+      const double L_total = 3.0;
+      swing.L = L_total;
+      swing.omega = 0.1;
+      ASSERT_EQ(w.watch(swing, Anchor{}, L_total, 8.0), std::nullopt);
+      const Anchor anchor = contactOn(swing, 2.0);
+      swing.wrap(1.0 / 3.0);
+      swing.omega = 0.3;
+      ASSERT_EQ(w.watch(swing, anchor, L_total, 5.0), std::nullopt) << seed;
+      swing.pivot.y() += slip;
+      const auto delay = w.watch(swing, anchor, L_total, 3.0);
+      ASSERT_TRUE(delay) << seed;
+      EXPECT_LE(*delay, 1.2) << seed;
+      EXPECT_EQ(w.verdict.hypothesis, TetherHypothesis::kSlipped) << seed;
+      EXPECT_GT(w.verdict.slip * slip, 0.0) << seed;
+      EXPECT_LE(std::abs(w.verdict.slip), 0.35) << seed;
+    }
+  }
+}
+
+TEST(ContactObserver, ABarometerIsNoAlarmByItself) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    Swing swing(seed);
+    swing.barometer = true;
+    Watched w;
+    const double L_total = 3.0;
+    swing.L = L_total;
+    ASSERT_EQ(w.watch(swing, Anchor{}, L_total, 8.0), std::nullopt);
+    const Anchor anchor = contactOn(swing, 2.0);
+    swing.wrap(1.0 / 3.0);
+    for (int second = 0; second < 3600; ++second) {
+      wander(swing, second);
+      ASSERT_EQ(w.watch(swing, anchor, L_total, 1.0), std::nullopt) << second;
+    }
   }
 }
 
