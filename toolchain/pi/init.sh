@@ -94,7 +94,8 @@ again() {
     sleep 2
   done
 }
-get_airborne() { operator arm && operator takeoff --timeout 120; }
+# A flight that was broken off leaves its faults to be looked at; to disarm says that they were.
+get_airborne() { operator disarm; operator arm && operator takeoff --timeout 120; }
 fly() {
   tautline status --wait 60 >>/flight/operator.txt 2>&1 ||
     { tell "error: the station did not start: $(tail -n 1 /flight/station.txt)"; return 4; }
