@@ -1,13 +1,17 @@
 // Cost of one cycle of the station, stage by stage, and its calls of the heap: a recorded flight is
 // stepped again. Beside the station itself run the parts that it is made of, with the same inputs;
 // that they say the same as the station in every cycle is checked, so that what is timed is what
-// flies. The device is a real driver on a real pseudo terminal, telemetry goes through real LCM.
+// flies. The device is a real driver on a real pseudo terminal, telemetry goes through real LCM; as
+// a reference as many bytes are sent once more by the kernel alone.
 // Exit code 1 if they do not, or if the heap is used.
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <pty.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/bench/benchmark/recorded_flight.h"
@@ -40,6 +45,83 @@ class NullSink final : public TelemetrySink {
   bool publish(const char*, std::int64_t, std::span<const std::uint8_t>) noexcept override {
     return true;
   }
+};
+
+/// What LCM does at the least: a datagram to a group that a thread of this process listens to, as
+/// LCM's own does, for the station hears its own messages.
+class BareMulticast {
+ public:
+  BareMulticast() {
+    address_.sin_family = AF_INET;
+    address_.sin_port = htons(7686);
+    inet_pton(AF_INET, "239.255.76.67", &address_.sin_addr);
+    const ip_mreq group{.imr_multiaddr = address_.sin_addr, .imr_interface = {INADDR_ANY}};
+    const int yes = 1;
+    setsockopt(in_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    TAUTLINE_CHECK(bind(in_, to(), sizeof address_) == 0);
+    TAUTLINE_CHECK(setsockopt(in_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) == 0);
+    const unsigned char ttl = 0;
+    setsockopt(out_, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof ttl);
+    reader_ = std::thread([this] {
+      std::array<std::uint8_t, 65536> heard{};
+      while (recv(in_, heard.data(), heard.size(), 0) > 0) {
+      }
+    });
+  }
+  ~BareMulticast() {
+    send(0);
+    reader_.join();
+    close(in_);
+    close(out_);
+  }
+  BareMulticast(const BareMulticast&) = delete;
+  BareMulticast& operator=(const BareMulticast&) = delete;
+
+  void send(std::size_t size) noexcept {
+    static_cast<void>(sendto(out_, nothing_.data(), size, 0, to(), sizeof address_));
+  }
+
+ private:
+  [[nodiscard]] const sockaddr* to() const noexcept {
+    return reinterpret_cast<const sockaddr*>(&address_);
+  }
+
+  int in_{socket(AF_INET, SOCK_DGRAM, 0)};
+  int out_{socket(AF_INET, SOCK_DGRAM, 0)};
+  sockaddr_in address_{};
+  std::array<std::uint8_t, 32768> nothing_{};
+  std::thread reader_;
+};
+
+/// What a cycle sends, timed as one, and as much once more by the kernel alone.
+class TimedSink final : public TelemetrySink {
+ public:
+  explicit TimedSink(TelemetrySink& inner) : inner_(inner) {}
+
+  bool publish(const char* channel, std::int64_t utime,
+               std::span<const std::uint8_t> bytes) noexcept override {
+    const Time begin = monotonicNow();
+    const bool ok = inner_.publish(channel, utime, bytes);
+    sent_ += monotonicNow() - begin;
+    if (count_ < sizes_.size()) sizes_[count_++] = kLcmHeader + std::strlen(channel) + bytes.size();
+    return ok;
+  }
+  void endCycle(BareMulticast& bare, Stage& by_lcm, Stage& by_kernel) {
+    by_lcm.add(sent_);
+    sleepUntil(monotonicNow() + kPause);
+    const Time begin = monotonicNow();
+    for (std::size_t i = 0; i < count_; ++i) bare.send(sizes_[i]);
+    by_kernel.add(monotonicNow() - begin);
+    sent_ = {};
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kLcmHeader = 9;  // magic, sequence, the channel's terminator
+  TelemetrySink& inner_;
+  Duration sent_{};
+  std::array<std::size_t, 64> sizes_{};
+  std::size_t count_{0};
 };
 
 /// The simulated machine at the far end of a pseudo terminal, moved along by hand.
@@ -82,9 +164,11 @@ struct Stages {
             Stage("  control", calls),
             Stage("  gate, dead zone", calls),
             Stage("command encode, write", calls),
-            Stage("telemetry publish", calls),
+            Stage("telemetry, of which", calls),
+            Stage("  LCM publish", calls),
             Stage("black box", calls),
-            Stage("whole cycle", calls)} {}
+            Stage("whole cycle", calls),
+            Stage("reference: bare multicast", calls)} {}
   enum Index {
     kRead,
     kPoll,
@@ -96,11 +180,13 @@ struct Stages {
     kGate,
     kWrite,
     kTelemetry,
+    kPublish,
     kBlackBox,
-    kCycle
+    kCycle,
+    kBareSend
   };
   Stage& operator[](Index i) { return all[i]; }
-  std::array<Stage, 12> all;
+  std::array<Stage, 14> all;
 };
 
 /// The parts of the core once more, fed as the station feeds its own.
@@ -182,7 +268,7 @@ class Shadow {
 
 /// What the loop does in a cycle, in its order, for every cycle of the flight; false if the parts
 /// disagree with the station.
-bool stepAgain(const RecordedFlight& flight, TelemetrySink& sink, LcmLink* lcm, Stages& stages) {
+bool stepAgain(const RecordedFlight& flight, TimedSink& sink, LcmLink* lcm, Stages& stages) {
   const StationConfig& config = flight.config.station;
   const auto station = std::make_unique<Station>(config.core);
   const auto shadow = std::make_unique<Shadow>(config.core, *flight.mission.plan);
@@ -193,6 +279,8 @@ bool stepAgain(const RecordedFlight& flight, TelemetrySink& sink, LcmLink* lcm, 
   const auto path =
       std::filesystem::path("/dev/shm") / ("tautline_cycle_benchmark_" + std::to_string(getpid()));
   BlackBox black_box(path);
+  std::optional<BareMulticast> bare;
+  if (lcm != nullptr) bare.emplace();
   SensorFrame frame;
   bool same = true;
   for (const StepInput& in : flight.cycles) {
@@ -207,6 +295,7 @@ bool stepAgain(const RecordedFlight& flight, TelemetrySink& sink, LcmLink* lcm, 
     stages[Stages::kTelemetry].time([&] { telemetry.publish(in, *out); });
     stages[Stages::kBlackBox].time([&] { black_box.record(makeRecord(in, *out, {}, {})); });
     stages[Stages::kCycle].add(monotonicNow() - begin);
+    if (bare) sink.endCycle(*bare, stages[Stages::kPublish], stages[Stages::kBareSend]);
     same = shadow->step(in, *out, stages) && same;
   }
   std::filesystem::remove(path);
@@ -235,7 +324,7 @@ int run() {
   }
   for (const RealTimeStep& step : startRealTime(RealTimeConfig{}))
     if (!step.ok) std::printf("not %s\n", step.name.c_str());
-  TelemetrySink& sink = lcm ? static_cast<TelemetrySink&>(*lcm) : null;
+  TimedSink sink(lcm ? static_cast<TelemetrySink&>(*lcm) : null);
   // Once to warm caches, branch predictors and LCM's table of channels; once to measure.
   Stages warm_up(flight.cycles.size());
   bool same = stepAgain(flight, sink, lcm.get(), warm_up);
