@@ -13,7 +13,7 @@ constexpr double kGravity = 9.81;
 constexpr double kLeastUpright = 0.5;  // n_y; leaning more than this the drone is not hovering
 constexpr double kLongestStep = 0.5;   // [s] after a longer gap everything begins anew
 constexpr double kCap = 2.0;           // evidence is kept up to this many thresholds
-constexpr int kHypotheses = 7;
+constexpr int kHypotheses = 5;
 
 bool isFinite(const ContactObserverInput& in) noexcept {
   return std::isfinite(in.L_total) && std::isfinite(in.theta) && std::isfinite(in.phi) &&
@@ -60,7 +60,7 @@ ContactObserver::ContactObserver(const ContactObserverConfig& config) noexcept
       threshold_(
           std::max(1.0, std::log(3600.0 * kHypotheses /
                                  (config.correlation_time_s * config.false_alarms_per_hour)))),
-      height_(config.height) {}
+      slip_(config.slip) {}
 
 const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInput& in) noexcept {
   const double dt = last_ && now > *last_ ? toSeconds(now - *last_) : 0.0;
@@ -88,8 +88,9 @@ const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInp
     d_.reset(d, a_);
     f_.reset(acceleration(in, d), a_);
     bias_ = 0.0;
-    height_.restart();
-    forgetEvidence();
+    before_ = holds_ = 0.0;
+    unplanned_.fill(0.0);
+    slip_.restart();
     changed_.reset();
     began_ = now;
     return verdict_;
@@ -108,8 +109,8 @@ const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInp
   bias_ += -std::expm1(-dt / config_.bias_time_s) * (raw - bias_);
   residual_ = raw - bias_;
   turning_ = across.dot(turning);
-  readHeight(now, in, L);
   judge(now, dt, L);
+  watchSlip(now, in, L);
   decide(in, d, L);
   return verdict_;
 }
@@ -126,13 +127,9 @@ void ContactObserver::changeAnchor(Time now, const ContactObserverInput& in,
   anchor_ = in.anchor;
   changed_ = now;
   formed_ = popped_;
-  height_.restart();
-  forgetEvidence();
-}
-
-void ContactObserver::forgetEvidence() noexcept {
-  before_ = holds_ = up_ = down_ = 0.0;
+  before_ = holds_ = 0.0;
   unplanned_.fill(0.0);
+  slip_.restart();
 }
 
 /// Of the active contact; null for the reel, and where the observer was not there when the contact
@@ -143,43 +140,32 @@ const Eigen::Vector3d* ContactObserver::anchorBelow() const noexcept {
   return below ? &*below : nullptr;
 }
 
-/// Log likelihood ratio in a cycle of a lever that is `extra` longer against the active one.
-double ContactObserver::evidenceOf(double extra, double dt, double L) const noexcept {
+/// Log likelihood ratio of a lever that is `extra` longer against the active one.
+double ContactObserver::evidenceOf(double extra, double L) const noexcept {
   const double expected = extra * turning_;
   const double uncertain = config_.lever_sigma * (L + std::abs(extra)) * turning_;
   const double variance = config_.sigma_mps * config_.sigma_mps + uncertain * uncertain;
-  const double samples = dt / config_.correlation_time_s;
-  return samples * (expected * residual_ - 0.5 * expected * expected) / variance;
-}
-
-/// Barometric less the height that length and angles give about the active anchor.
-void ContactObserver::readHeight(Time now, const ContactObserverInput& in, double L) noexcept {
-  if (!in.height || !std::isfinite(*in.height) || !std::isfinite(in.sag)) {
-    height_.restart();
-    return;
-  }
-  const double rise = std::sin(in.theta - in.sag);
-  height_.update(now, in.height_sequence, *in.height - (anchor_.p_WA.y() + L * rise));
+  return (expected * residual_ - 0.5 * expected * expected) / variance;
 }
 
 void ContactObserver::judge(Time now, double dt, double L) noexcept {
   const double cap = kCap * threshold_;
   const double keep = std::exp(-dt / config_.memory_s);
   const auto add = [&](double& sum, double evidence) {
-    sum = std::clamp(keep * sum + evidence, 0.0, cap);
+    sum = std::clamp(keep * sum + evidence * dt / config_.correlation_time_s, 0.0, cap);
   };
   const double since = changed_ ? toSeconds(now - *changed_) : 1e9;
   const bool settled = toSeconds(now - *began_) > config_.settle_s;
   const bool relaxing = popped_ && since < config_.relax_s;
   if (!settled || relaxing) {
-    before_ = up_ = down_ = 0.0;
+    before_ = 0.0;
     unplanned_.fill(0.0);
     return;
   }
   if (const Eigen::Vector3d* const below = anchorBelow()) {
     const double extra = (anchor_.p_WA - *below).norm();
     if (extra >= config_.least_lever_m) {
-      const double evidence = evidenceOf(extra, dt, L);
+      const double evidence = evidenceOf(extra, L);
       add(before_, evidence);
       add(holds_, -evidence);
       formed_ = formed_ || (since > config_.form_s && holds_ >= threshold_ && before_ < 1.0);
@@ -188,15 +174,24 @@ void ContactObserver::judge(Time now, double dt, double L) noexcept {
   for (std::size_t i = 0; i < kUnplannedShares.size(); ++i) {
     const double extra = -(1.0 - kUnplannedShares[i]) * L;
     if (-extra >= config_.least_lever_m) {
-      add(unplanned_[i], evidenceOf(extra, dt, L));
+      add(unplanned_[i], evidenceOf(extra, L));
     } else {
       unplanned_[i] *= keep;
     }
   }
-  if (anchor_.contact_count > 0) {
-    add(up_, height_.evidenceOf(config_.slip_m));
-    add(down_, height_.evidenceOf(-config_.slip_m));
+}
+
+/// Only about a contact that has had its time to form, or the one let go before it to come off.
+void ContactObserver::watchSlip(Time now, const ContactObserverInput& in, double L) noexcept {
+  const double since = toSeconds(now - changed_.value_or(*began_));
+  const bool at_contact =
+      anchor_.contact_count > 0 && since >= (popped_ ? config_.relax_s : config_.form_s);
+  if (!at_contact || !in.height || !std::isfinite(*in.height) || !std::isfinite(in.sag)) {
+    slip_.restart();
+    return;
   }
+  const double reckoned = anchor_.p_WA.y() + L * std::sin(in.theta - in.sag);
+  slip_.update(now, in.height_sequence, *in.height - reckoned);
 }
 
 void ContactObserver::decide(const ContactObserverInput& in, const Eigen::Vector3d& d,
@@ -205,17 +200,17 @@ void ContactObserver::decide(const ContactObserverInput& in, const Eigen::Vector
   const bool forming = changed_ && !formed_ && toSeconds(*last_ - *changed_) < config_.form_s;
   const double before = forming ? 0.0 : before_;
   const bool earlier = before >= *most;
-  const double elsewhere = std::max(before, *most) / threshold_;
-  const double slid = std::max(up_, down_) / threshold_;
+  const double evidence = std::max(before, *most) / threshold_;
   verdict_ = {};
-  verdict_.evidence = std::max(elsewhere, slid);
+  verdict_.evidence = evidence;
   verdict_.lever = L;
   verdict_.p_WC = in.anchor.p_WA;
-  if (elsewhere < 1.0 && slid >= 1.0) {
-    verdict_.hypothesis = TetherHypothesis::kSlipped;
-    verdict_.slip = height_.step();
+  verdict_.slip_evidence = slip_.evidence();
+  verdict_.slip = slip_.slip();
+  if (evidence < 1.0) {
+    if (slip_.slipped()) verdict_.hypothesis = TetherHypothesis::kSlipped;
+    return;
   }
-  if (elsewhere < 1.0) return;
   if (earlier) {
     verdict_.hypothesis = formed_ ? TetherHypothesis::kLost : TetherHypothesis::kNotFormed;
     if (const Eigen::Vector3d* const below = anchorBelow()) verdict_.p_WC = *below;

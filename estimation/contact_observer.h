@@ -10,7 +10,7 @@
 /// divided by how much faster the azimuth turns, is the lever. Hypotheses about the lever are
 /// judged by the likelihood ratio of what the lean and the turning of the tether say about the
 /// sideways velocity. Of a contact that slides along its edge the lever says nothing; the barometer
-/// does, unless the edge is level: the drone is not as high as it is reckoned to be.
+/// does (slip_witness.h).
 
 #include <array>
 #include <cstdint>
@@ -22,7 +22,7 @@
 #include "common/estimate.h"
 #include "common/fields.h"
 #include "common/time.h"
-#include "estimation/height_witness.h"
+#include "estimation/slip_witness.h"
 
 namespace tautline {
 
@@ -57,8 +57,7 @@ struct ContactObserverConfig {
   double form_s{0.9};
   double longest_period_s{0.06};
   double least_tension_n{0.4};
-  double slip_m{0.2};
-  HeightWitnessConfig height;
+  SlipWitnessConfig slip;
 
   template <class Visitor>
   void fields(Visitor& v) {
@@ -88,8 +87,7 @@ struct ContactObserverConfig {
             "slower angles or attitude show no accelerations: nothing is judged");
     v.field("least_tension_n", least_tension_n, Range{0, 100},
             "a tether with less nominal tension moves otherwise than its end: nothing is judged");
-    v.field("slip_m", slip_m, Range{0.02, 10}, "up or down along a contact's edge that is told");
-    v.section("height", height);
+    v.section("slip", slip);
   }
 };
 
@@ -105,15 +103,16 @@ struct ContactObserverInput {
   double G{6.0};                     ///< Weight of the vehicle [N].
   Anchor anchor;                     ///< The active one.
   std::optional<double> height;      ///< Barometric, in W [m], where sensed.
-  std::uint32_t height_sequence{0};  ///< Of its reading.
+  std::uint32_t height_sequence{0};  ///< Of the message that brought it.
 };
 
 struct ContactVerdict {
   TetherHypothesis hypothesis{TetherHypothesis::kHolds};
-  double evidence{0.0};  ///< Of the most likely hypothesis but kHolds, over what it takes: 1.
+  double evidence{0.0};  ///< Of the most likely other anchor, over what it takes: 1.
   double lever{0.0};     ///< From the drone to what the tether turns about, under it [m].
   Eigen::Vector3d p_WC{Eigen::Vector3d::Zero()};  ///< Where that is.
-  double slip{0.0};                               ///< Upwards, of kSlipped [m].
+  double slip_evidence{0.0};                      ///< That the active one has slid, over 1 ...
+  double slip{0.0};                               ///< ... and by how much, upwards [m].
 };
 
 /// A vector signal x through lambda^2/(s + lambda)^2/(s + a), and its first two derivatives so.
@@ -149,11 +148,10 @@ class ContactObserver {
 
   void changeAnchor(Time now, const ContactObserverInput& in, const Eigen::Vector3d& d) noexcept;
   [[nodiscard]] const Eigen::Vector3d* anchorBelow() const noexcept;
-  void readHeight(Time now, const ContactObserverInput& in, double L) noexcept;
-  void forgetEvidence() noexcept;
   void judge(Time now, double dt, double L) noexcept;
+  void watchSlip(Time now, const ContactObserverInput& in, double L) noexcept;
   void decide(const ContactObserverInput& in, const Eigen::Vector3d& d, double L) noexcept;
-  [[nodiscard]] double evidenceOf(double extra, double dt, double L) const noexcept;
+  [[nodiscard]] double evidenceOf(double extra, double L) const noexcept;
 
   ContactObserverConfig config_;
   double lambda_, a_, threshold_;
@@ -165,16 +163,13 @@ class ContactObserver {
   Anchor anchor_;
   Eigen::Vector3d offset_{Eigen::Vector3d::Zero()};
   BandFilter p_, d_, f_;
-  HeightWitness height_;
+  SlipWitness slip_;
   double bias_{0.0};
   double residual_{0.0};
   double turning_{0.0};
   double before_{0.0};  ///< Evidence for the anchor before the active one, ...
   double holds_{0.0};   ///< ... against it, ...
-  std::array<double, kUnplannedShares.size()>
-      unplanned_{};   ///< ... for a contact at each share, ...
-  double up_{0.0};    ///< ... for a slip upwards, ...
-  double down_{0.0};  ///< ... and downwards.
+  std::array<double, kUnplannedShares.size()> unplanned_{};  ///< ... for a contact at each share.
   ContactVerdict verdict_;
 };
 

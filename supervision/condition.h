@@ -164,7 +164,7 @@ inline constexpr auto kConditionInfos = std::to_array<ConditionInfo>({
      "the contact that the mission has made is not there: the tether goes straight on",
      "`tautline backup`; look on which side of the obstacle the tether passes"},
     {Condition::kContactSlipped, "CONTACT_SLIPPED", ConditionKind::kWarns, "m", 0.0, 2.0,
-     "the tether slides along the edge of its contact; the position is off by as much",
+     "the tether has slid along the edge of its contact; the position is off by as much",
      "`tautline backup` undoes the contact; fly on only with room to spare"},
     {Condition::kReelScale, "REEL_SCALE", ConditionKind::kWarns, "", 0.0, 2.0,
      "the reel's scale is not the calibrated one",

@@ -204,7 +204,7 @@ void ConditionMonitor::watchContact(const MonitorInput& in) noexcept {
   report(C::kContactLost, TetherHypothesis::kLost);
   report(C::kContactNotFormed, TetherHypothesis::kNotFormed);
   findings_.report(C::kContactSlipped, verdict.hypothesis == TetherHypothesis::kSlipped,
-                   std::abs(verdict.slip), c.slip_m);
+                   verdict.slip, c.slip.slip_m);
   if (verdict.hypothesis == TetherHypothesis::kUnplanned)
     findings_.report(C::kUnplannedContact, true, verdict.evidence, 1.0);
 }

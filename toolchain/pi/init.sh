@@ -94,13 +94,14 @@ again() {
     sleep 2
   done
 }
-# A flight that was broken off leaves its faults to be looked at; to disarm says that they were.
-get_airborne() { operator disarm; operator arm && operator takeoff --timeout 120; }
+get_airborne() { operator arm && operator takeoff --timeout 120; }
 fly() {
   tautline status --wait 60 >>/flight/operator.txt 2>&1 ||
     { tell "error: the station did not start: $(tail -n 1 /flight/station.txt)"; return 4; }
   for flight in 1 2 3; do
     [ $flight = 1 ] || tell "flight $flight"
+    # A flight that was broken off leaves its faults to be looked at; to disarm says that they were.
+    [ $flight = 1 ] || again 10 operator disarm
     again 10 get_airborne || return 3
     operator navigate "/opt/tautline/config/missions/$mission" --timeout "$limit_s"
     navigated=$?
