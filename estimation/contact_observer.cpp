@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/tether_geometry.h"
+#include "estimation/evidence.h"
 
 namespace tautline {
 namespace {
@@ -55,11 +56,8 @@ ContactObserver::ContactObserver(const ContactObserverConfig& config) noexcept
     : config_(config),
       lambda_(2.0 * std::numbers::pi * config.smoothing_rate_hz),
       a_(2.0 * std::numbers::pi * config.forget_rate_hz),
-      // Of a cumulated log likelihood ratio that says e^h the odds are e^-h in each of its
-      // independent samples.
       threshold_(
-          std::max(1.0, std::log(3600.0 * kHypotheses /
-                                 (config.correlation_time_s * config.false_alarms_per_hour)))),
+          evidenceThreshold(kHypotheses, config.correlation_time_s, config.false_alarms_per_hour)),
       slip_(config.slip) {}
 
 const ContactVerdict& ContactObserver::update(Time now, const ContactObserverInput& in) noexcept {
@@ -205,7 +203,6 @@ void ContactObserver::decide(const ContactObserverInput& in, const Eigen::Vector
   verdict_.evidence = evidence;
   verdict_.lever = L;
   verdict_.p_WC = in.anchor.p_WA;
-  verdict_.slip_evidence = slip_.evidence();
   verdict_.slip = slip_.slip();
   if (evidence < 1.0) {
     if (slip_.slipped()) verdict_.hypothesis = TetherHypothesis::kSlipped;

@@ -111,8 +111,7 @@ struct ContactVerdict {
   double evidence{0.0};  ///< Of the most likely other anchor, over what it takes: 1.
   double lever{0.0};     ///< From the drone to what the tether turns about, under it [m].
   Eigen::Vector3d p_WC{Eigen::Vector3d::Zero()};  ///< Where that is.
-  double slip_evidence{0.0};                      ///< That the active one has slid, over 1 ...
-  double slip{0.0};                               ///< ... and by how much, upwards [m].
+  double slip{0.0};  ///< By how much the active one has slid, upwards [m].
 };
 
 /// A vector signal x through lambda^2/(s + lambda)^2/(s + a), and its first two derivatives so.

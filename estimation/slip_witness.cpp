@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/evidence.h"
+
 namespace tautline {
 namespace {
 
@@ -13,8 +15,7 @@ constexpr int kDirections = 2;
 SlipWitness::SlipWitness(const SlipWitnessConfig& config) noexcept
     : config_(config),
       threshold_(
-          std::max(1.0, std::log(3600.0 * kDirections /
-                                 (config.correlation_time_s * config.false_alarms_per_hour)))),
+          evidenceThreshold(kDirections, config.correlation_time_s, config.false_alarms_per_hour)),
       up_{.step = config.slip_m},
       down_{.step = -config.slip_m} {}
 
