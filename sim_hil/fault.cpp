@@ -335,4 +335,10 @@ std::string describe(const Fault& fault) {
   return text + " " + nameOf(fault.mode, kFaultModeNames);
 }
 
+InputError tooManyFaults(const Fault& fault) {
+  return InputError({.key = describe(fault),
+                     .problem = "too many faults at once",
+                     .allowed = "at most " + std::to_string(kMaxFaults)});
+}
+
 }  // namespace tautline::sim

@@ -6,6 +6,7 @@
 /// reel_faults.h, link_faults.h, frame_faults.h, Plant.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include "common/error.h"
 #include "common/fields.h"
 #include "common/time.h"
 #include "sim_hil/sim_config.h"
@@ -182,5 +184,11 @@ void checkFault(const Fault& fault, SimDevice device, bool on_bench);
 
 /// "encoder stuck", "flag:MOTOR_ERROR on".
 [[nodiscard]] std::string describe(const Fault& fault);
+
+/// How many faults a machine, and the bench around it, can have scheduled at once.
+inline constexpr std::size_t kMaxFaults = 16;
+
+/// What is said of a fault that is one too many.
+[[nodiscard]] InputError tooManyFaults(const Fault& fault);
 
 }  // namespace tautline::sim

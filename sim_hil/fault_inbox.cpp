@@ -3,26 +3,11 @@
 #include <cstdio>
 
 #include "common/error.h"
-#include "common/multicast.h"
 #include "lcmtypes/channels.h"
-#include "sim_hil/fault_schedule.h"
+#include "lcmtypes/lcm_access.h"
+#include "sim_hil/fault.h"
 
 namespace tautline::sim {
-namespace {
-
-InputError cannotJoin(const std::string& url) {
-  return InputError(
-      {.key = "--take-faults", .problem = "no LCM at " + url, .remedy = kMulticastRemedy},
-      ExitCode::kTimeout);
-}
-
-/// `url` itself; asked before LCM is, which would answer with a page of text.
-const std::string& reachable(const std::string& url) {
-  if (!hasMulticastRoute(url)) throw cannotJoin(url);
-  return url;
-}
-
-}  // namespace
 
 FaultInbox::FaultInbox(const std::string& lcm_url, SimDevice device)
     : lcm_(reachable(lcm_url)), device_(device) {
@@ -47,9 +32,7 @@ void FaultInbox::onFault(const lcm::ReceiveBuffer*, const std::string&,
     checkFault(fault, device_, false);
     fault.at = simulator_->now() + (fault.at - Time{});
     if (simulator_->inject(fault)) return;
-    throw InputError({.key = describe(fault),
-                      .problem = "too many faults at once",
-                      .allowed = "at most " + std::to_string(kMaxFaults)});
+    throw tooManyFaults(fault);
   } catch (const InputError& e) {
     std::fprintf(stderr, "tautline-sim: SIM_FAULT refused: %s\n", e.what());
   }

@@ -15,8 +15,6 @@
 
 namespace tautline::sim {
 
-inline constexpr std::size_t kMaxFaults = 16;
-
 /// Everything: real-time safe: no allocation, no locks, no exceptions.
 class FaultSchedule {
  public:

@@ -180,11 +180,7 @@ std::vector<Fault> chooseFaults(const Options& o, SimDevice device) {
 
 void inject(Simulator& simulator, const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
-    if (!simulator.inject(fault)) {
-      throw InputError({.key = "--fault, --scenario",
-                        .problem = std::to_string(faults.size()) + " faults",
-                        .allowed = "at most " + std::to_string(kMaxFaults)});
-    }
+    if (!simulator.inject(fault)) throw tooManyFaults(fault);
   }
 }
 

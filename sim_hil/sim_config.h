@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "common/fields.h"
+#include "sim_hil/dispersion.h"
 #include "sim_hil/fotokite_emulator_config.h"
 #include "sim_hil/reel.h"
 #include "sim_hil/sensors.h"
@@ -39,6 +40,7 @@ struct SimConfig {
   VehicleConfig vehicle;
   WindConfig wind;
   SensorConfig sensors;
+  DispersionConfig dispersion;
   FotokiteEmulatorConfig fotokite;
   TautlineEmulatorConfig tautline;
 
@@ -55,6 +57,7 @@ struct SimConfig {
     v.section("vehicle", vehicle);
     v.section("wind", wind);
     v.section("sensors", sensors);
+    v.section("dispersion", dispersion);
     v.section("fotokite", fotokite);
     v.section("tautline", tautline);
   }

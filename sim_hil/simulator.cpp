@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim_hil/dispersion.h"
 #include "sim_hil/fotokite_emulator.h"
 #include "sim_hil/frame_faults.h"
 #include "sim_hil/link_faults.h"
@@ -13,7 +14,8 @@ namespace tautline::sim {
 
 namespace {
 
-SimConfig effective(SimConfig config) {
+SimConfig machineOf(const SimConfig& configured, std::uint64_t seed) {
+  SimConfig config = dispersed(configured, seed);
   if (config.device != SimDevice::kFotokite) config.reel.metres_per_count = bus::kCountUnit;
   return config;
 }
@@ -105,7 +107,7 @@ std::unique_ptr<Machine> makeMachine(const SimConfig& config, Plant& plant) {
 /// Everything but the constructor: real-time safe: no allocation, no locks, no exceptions.
 struct Simulator::Impl {
   Impl(const SimConfig& config, const Scene& world, std::uint64_t seed)
-      : plant(effective(config), world, seed), machine(makeMachine(config, plant)) {}
+      : plant(machineOf(config, seed), world, seed), machine(makeMachine(config, plant)) {}
 
   /// Commands that were held back on the uplink reach the machine.
   void deliver() noexcept {

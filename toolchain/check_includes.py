@@ -12,7 +12,7 @@ PROJECT = ["common", "lcmtypes", "drivers", "estimation", "control", "supervisio
 # Folder (longest prefix wins) -> project folders it may include besides itself. A name ending in .h is a single header.
 MAY_INCLUDE = {
     "common": [],
-    "lcmtypes": [],
+    "lcmtypes": ["common"],
     "drivers": ["common"],
     "estimation": ["common"],
     "control": ["common"],

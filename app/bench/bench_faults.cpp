@@ -15,12 +15,6 @@ FaultOwner ownerOf(const Fault& fault) noexcept {
   return {.bench = bench, .machine = !bench};
 }
 
-InputError tooManyFaults(const Fault& fault) {
-  return InputError({.key = describe(fault),
-                     .problem = "too many faults at once",
-                     .allowed = "at most " + std::to_string(sim::kMaxFaults)});
-}
-
 void BenchFaults::update(Time now) noexcept {
   faults_.update(now);
   const auto cut = [this](FaultTarget target, sim::LooseContact& contact) {

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "app/station/telemetry.h"
-#include "common/error.h"
 #include "common/time.h"
 #include "sim_hil/fault_schedule.h"
 #include "supervision/operator_command.h"
@@ -22,9 +21,6 @@ struct FaultOwner {
   bool machine{false};
 };
 [[nodiscard]] FaultOwner ownerOf(const sim::Fault& fault) noexcept;
-
-/// The error of a rig that has no room for this fault.
-[[nodiscard]] InputError tooManyFaults(const sim::Fault& fault);
 
 /// Everything in it is real-time safe: no allocation, no locks, no exceptions.
 class BenchFaults {

@@ -13,7 +13,7 @@
 #include <tautline/sim_fault_t.hpp>
 
 #include "app/cli/termination.h"
-#include "app/lcm_access.h"
+#include "lcmtypes/lcm_access.h"
 #include "app/station/operator_message.h"
 #include "common/clock.h"
 #include "common/mission/scene.h"
@@ -179,7 +179,7 @@ void HilRig::onMessage(const lcm::ReceiveBuffer* buffer, const std::string& chan
 void HilRig::inject(const sim::Fault& fault) {
   sim::checkFault(fault, sim_device_, true);
   const FaultOwner owner = ownerOf(fault);
-  if (owner.bench && !faults_.add(fault)) throw tooManyFaults(fault);
+  if (owner.bench && !faults_.add(fault)) throw sim::tooManyFaults(fault);
   if (owner.machine) tell(fault);
 }
 

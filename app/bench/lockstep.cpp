@@ -140,7 +140,7 @@ void Lockstep::inject(const sim::Fault& fault) {
   sim::checkFault(fault, sim_device_, true);
   const FaultOwner owner = ownerOf(fault);
   if ((owner.bench && !faults_.add(fault)) || (owner.machine && !simulator_.inject(fault)))
-    throw tooManyFaults(fault);
+    throw sim::tooManyFaults(fault);
 }
 
 /// The operator of the last command lives on, as the command line does while it waits.

@@ -21,7 +21,7 @@
 #include "app/bench/hil_rig.h"
 #include "app/bench/log_sink.h"
 #include "app/cli/termination.h"
-#include "app/lcm_access.h"
+#include "lcmtypes/lcm_access.h"
 
 namespace tautline::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <tautline/heartbeat_t.hpp>
 #include <tautline/teleop_t.hpp>
 
-#include "app/lcm_access.h"
+#include "lcmtypes/lcm_access.h"
 #include "app/station/mission_upload.h"
 #include "app/station/operator_message.h"
 #include "common/clock.h"

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "app/experiments/staircase.h"
+#include "app/experiments/staircase_paths.h"
 #include "app/experiments/truth_paths.h"
 #include "common/toml/config_file.h"
 

@@ -2,7 +2,7 @@
 
 #include <tautline/log_status_t.hpp>
 
-#include "app/lcm_access.h"
+#include "lcmtypes/lcm_access.h"
 #include "common/error.h"
 #include "lcmtypes/channels.h"
 

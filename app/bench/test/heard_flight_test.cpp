@@ -3,7 +3,7 @@
 
 #include "app/bench/heard_flight.h"
 
-#include <cmath>
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,18 +104,25 @@ TEST(HeardFlight, IsTheFlightThatWasTold) {
 TEST(HeardFlight, RatesOfTheModeBeforeDoNotCountInTheNext) {
   Flown flown;
   fly(flown);
-  HeardFlight heard;
-  bool moved = false;
-  for (const auto& [channel, bytes] : flown.recorder.sent) {
-    heard.take(channel, bytes);
-    if (heard.next()) heard.goOn();
-    const StepOutput& out = heard.output();
-    moved = moved || out.command.length_rate != 0.0;
-    const Mode mode = out.supervision.mode;
-    const double still = mode == Mode::kStandby || mode == Mode::kArmed ? 0.0 : 1e9;
-    EXPECT_LE(std::abs(out.command.length_rate), still);
+  const auto& sent = flown.recorder.sent;
+  const auto standby = std::find_if(sent.begin(), sent.end(), [](const auto& message) {
+    return message.first == channel::kStationState;
+  });
+  ASSERT_NE(standby, sent.end());
+  for (const bool in_its_cycle : {false, true}) {
+    HeardFlight heard;
+    for (const auto& [channel, bytes] : sent) {
+      if (heard.output().command.length_rate != 0.0) break;
+      heard.take(channel, bytes);
+    }
+    ASSERT_NE(heard.output().command.length_rate, 0.0);
+    ASSERT_NE(heard.output().supervision.mode, Mode::kStandby);
+    if (!in_its_cycle) heard.goOn();
+    heard.take(channel::kStationState, standby->second);
+    EXPECT_EQ(heard.output().supervision.mode, Mode::kStandby);
+    EXPECT_EQ(heard.output().command.length_rate != 0.0, in_its_cycle)
+        << "rates that were told in the cycle of the change are the new mode's";
   }
-  EXPECT_TRUE(moved);
 }
 
 TEST(HeardFlight, BeginsWithBothProgramsAndIgnoresDamage) {

@@ -16,7 +16,7 @@
 
 #include "app/cli/log/log_command.h"
 #include "app/cli/termination.h"
-#include "app/lcm_access.h"
+#include "lcmtypes/lcm_access.h"
 #include "app/log/flight_recorder.h"
 #include "common/clock.h"
 #include "lcmtypes/channels.h"

@@ -20,7 +20,7 @@
 #include "app/cli/spy/spy_screen.h"
 #include "app/cli/spy/terminal.h"
 #include "app/cli/termination.h"
-#include "app/lcm_access.h"
+#include "lcmtypes/lcm_access.h"
 #include "common/clock.h"
 
 namespace tautline::cli {

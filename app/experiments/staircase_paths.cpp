@@ -1,0 +1,64 @@
+#include "app/experiments/staircase_paths.h"
+
+#include "app/experiments/map_world.h"
+
+namespace tautline::experiments {
+namespace {
+
+/// The vehicle's radius in plant.toml: the planner's map is grown by it.
+constexpr double kInflation = 0.15;  // [m]
+
+}  // namespace
+
+std::shared_ptr<const Stairs> planStairs(const Setup& setup) {
+  const auto config = setup.folder / "..";
+  planning::RiskArguments arguments;
+  arguments.map.map = (config / "scenes/dissertation/staircase.scene.toml").string();
+  arguments.params = (config / "risk/dissertation.toml").string();
+  const auto stairs = std::make_shared<Stairs>();
+  stairs->space = planning::loadRiskSpace(arguments, planning::Progress{});
+  const planning::VoxelMap& map = *stairs->space.space.map;
+  for (std::size_t v = 0; v < kViewpoints.size(); ++v) {
+    PlannedPath& path = stairs->paths[v];
+    path = planPath(stairs->space, "directional", *map.start, kViewpoints[v].goal);
+    TAUTLINE_CHECK(path.found());
+    for (std::size_t station = 0; station < kStairStations.size(); ++station) {
+      CampaignFlight& flight = stairs->flights[station][v];
+      flight.station = station == 0 ? publishedDemonstration(setup) : setup.tautline;
+      flight.plant = setup.plant;
+      flight.mission = &path.mission;
+      flight.world = worldOf(map, *map.reel, *path.mission.plan, kInflation);
+    }
+  }
+  return stairs;
+}
+
+StationConfig publishedDemonstration(const Setup& setup) {
+  StationConfig station = setup.as_published;
+  station.core.localizer.variant = LocalizerVariant::kAsPublishedCode;
+  station.core.control.law = Law::kPosition;
+  return station;
+}
+
+nlohmann::json flyStairs(const CampaignFlight& flight, const StairTrial& trial) {
+  nlohmann::json result = {{"ends", nlohmann::json::array()}};
+  for (std::int64_t i = 0; i < trial.flights; ++i) {
+    bench::LockstepConfig config = flight.config(trial.seed + static_cast<std::uint64_t>(i));
+    if (trial.pull) pullWith(config, *trial.pull);
+    FlightTrack track;
+    result["ends"].push_back(toJson(flyPlanned(config, *flight.mission->plan, flight.goal_tolerance,
+                                               trial.tracks ? &track : nullptr)));
+    if (!trial.tracks) continue;
+    nlohmann::json points = nlohmann::json::array();
+    for (std::size_t k = 0; k < track.size(); k += 5)
+      points.push_back({track[k].x(), track[k].y(), track[k].z()});
+    result["tracks"].push_back(std::move(points));
+  }
+  return result;
+}
+
+void addEnds(const nlohmann::json& result, CampaignTally& tally) {
+  for (const auto& end : result.at("ends")) tally.add(verdictFrom(end));
+}
+
+}  // namespace tautline::experiments

@@ -1,0 +1,22 @@
+#pragma once
+
+/// @file
+/// The staircase flown with other pulls on the tether: what decides the published software's
+/// success. Not real-time safe.
+
+#include <memory>
+#include <vector>
+
+#include "app/experiments/experiment.h"
+#include "app/experiments/staircase_paths.h"
+
+namespace tautline::experiments {
+
+/// Both stations, both paths; vehicle and station know the pull.
+[[nodiscard]] std::vector<Trial> stairPullTrials(const Setup& setup,
+                                                 const std::shared_ptr<const Stairs>& stairs);
+
+/// Adds the picture of success over the pull, and the table of how flights ended.
+void addStairPulls(const Results& results, Findings& findings);
+
+}  // namespace tautline::experiments
