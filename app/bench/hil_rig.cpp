@@ -13,12 +13,12 @@
 #include <tautline/sim_fault_t.hpp>
 
 #include "app/cli/termination.h"
-#include "lcmtypes/lcm_access.h"
 #include "app/station/operator_message.h"
 #include "common/clock.h"
 #include "common/mission/scene.h"
 #include "common/toml/config_file.h"
 #include "lcmtypes/channels.h"
+#include "lcmtypes/lcm_access.h"
 #include "sim_hil/fault.h"
 
 namespace tautline::bench {

@@ -5,12 +5,12 @@
 #include <tautline/heartbeat_t.hpp>
 #include <tautline/teleop_t.hpp>
 
-#include "lcmtypes/lcm_access.h"
 #include "app/station/mission_upload.h"
 #include "app/station/operator_message.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "lcmtypes/channels.h"
+#include "lcmtypes/lcm_access.h"
 
 namespace tautline::cli {
 namespace {

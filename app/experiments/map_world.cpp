@@ -110,6 +110,19 @@ double groundBelow(const Eigen::Vector3d& p, const Scene& scene) {
   return ground;
 }
 
+/// Walls, ceiling and floor are occupied like the obstacles: the real ones stand behind the map's
+/// border as obstacles stand inside their voxels. What stands against them goes on up to them.
+void moveBorderOut(Scene& scene, double inflation) {
+  for (Box& box : scene.boxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (box.min[axis] <= scene.min[axis]) box.min[axis] -= inflation;
+      if (box.max[axis] >= scene.max[axis]) box.max[axis] += inflation;
+    }
+  }
+  scene.min.array() -= inflation;
+  scene.max.array() += inflation;
+}
+
 }  // namespace
 
 SolidGrid solidGrid(const VoxelMap& map, double inflation) {
@@ -164,12 +177,14 @@ Scene worldOf(const VoxelMap& map, const Eigen::Vector3d& reel, const MissionPla
   scene.min = map.origin;
   scene.max =
       map.origin + map.resolution * Eigen::Vector3d(map.shape.nx, map.shape.ny, map.shape.nz);
-  scene.floor = scene.min.y();
-  if (!map.solid_border) {
+  scene.boxes = mergedBoxes(solidGrid(map, inflation));
+  if (map.solid_border) {
+    moveBorderOut(scene, inflation);
+  } else {
     scene.min -= Eigen::Vector3d(kOpenAir, 0.0, kOpenAir);
     scene.max += Eigen::Vector3d::Constant(kOpenAir);
   }
-  scene.boxes = mergedBoxes(solidGrid(map, inflation));
+  scene.floor = scene.min.y();
   if (scene.boxes.size() > static_cast<std::size_t>(sim::kMaxSolids)) {
     throw InputError(
         {.file = map.file,

@@ -2,9 +2,9 @@
 
 #include <tautline/log_status_t.hpp>
 
-#include "lcmtypes/lcm_access.h"
 #include "common/error.h"
 #include "lcmtypes/channels.h"
+#include "lcmtypes/lcm_access.h"
 
 namespace tautline {
 

@@ -16,10 +16,10 @@
 
 #include "app/cli/log/log_command.h"
 #include "app/cli/termination.h"
-#include "lcmtypes/lcm_access.h"
 #include "app/log/flight_recorder.h"
 #include "common/clock.h"
 #include "lcmtypes/channels.h"
+#include "lcmtypes/lcm_access.h"
 
 namespace tautline::cli {
 namespace {

@@ -20,8 +20,8 @@
 #include "app/cli/spy/spy_screen.h"
 #include "app/cli/spy/terminal.h"
 #include "app/cli/termination.h"
-#include "lcmtypes/lcm_access.h"
 #include "common/clock.h"
+#include "lcmtypes/lcm_access.h"
 
 namespace tautline::cli {
 namespace {

@@ -92,8 +92,8 @@ TEST(WorldOfMap, ParksTheDroneOnWhatIsBelowTheFirstWaypoint) {
   const Scene empty = worldOf(map, *map.reel, mission, 0.15);
   ASSERT_TRUE(empty.start.has_value());
   EXPECT_NEAR(empty.start->x(), map.start->x() - map.reel->x(), 1e-12);
-  EXPECT_NEAR(empty.start->y(), kFoot - map.reel->y(), 1e-12);
-  EXPECT_NEAR(empty.floor, -map.reel->y(), 1e-12);
+  EXPECT_NEAR(empty.start->y(), kFoot - 0.15 - map.reel->y(), 1e-12);
+  EXPECT_NEAR(empty.floor, -0.15 - map.reel->y(), 1e-12);
   // A block of a cell under it, and one above.
   Eigen::Vector3i cell = map.cellAt(*map.start);
   for (const int y : {0, 7}) {
@@ -102,6 +102,23 @@ TEST(WorldOfMap, ParksTheDroneOnWhatIsBelowTheFirstWaypoint) {
   }
   const Scene block = worldOf(map, *map.reel, mission, 0.0);
   EXPECT_NEAR(block.start->y(), 0.4 + kFoot - map.reel->y(), 1e-12);
+}
+
+TEST(WorldOfMap, WallsAreAsFarBehindTheBorderAsThingsAreInsideTheirVoxels) {
+  planning::VoxelMap map = noise(6, 4, 5, 0, 1);
+  const Eigen::Vector3i corner(0, 0, 4);  // against three walls
+  map.cells[static_cast<std::size_t>(map.shape.index(corner))] = planning::CellState::kOccupied;
+  const MissionPlan& mission = missionTo({1.0, 0.5, 0.5});
+  const Scene world = worldOf(map, map.origin, mission, 0.15);
+  const Eigen::Vector3d size(2.4, 1.6, 2.0);
+  EXPECT_TRUE(world.min.isApprox(Eigen::Vector3d::Constant(-0.15)));
+  EXPECT_TRUE(world.max.isApprox(size + Eigen::Vector3d::Constant(0.15)));
+  EXPECT_NEAR(world.floor, -0.15, 1e-12);
+  ASSERT_EQ(world.boxes.size(), 1U);
+  EXPECT_TRUE(world.boxes[0].min.isApprox(Eigen::Vector3d(-0.15, -0.15, 1.75)));
+  EXPECT_TRUE(world.boxes[0].max.isApprox(Eigen::Vector3d(0.25, 0.25, 2.15)));
+  map.solid_border = false;
+  EXPECT_NEAR(worldOf(map, map.origin, mission, 0.15).floor, 0.0, 1e-12);
 }
 
 TEST(WorldOfMap, RefusesMoreThanThePlantTakes) {
