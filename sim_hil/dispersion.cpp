@@ -27,6 +27,7 @@ SimConfig dispersed(const SimConfig& config, std::uint64_t seed) noexcept {
   flight.sensors.elevation_bias += sigma.elevation_bias * drawn(random);
   flight.sensors.azimuth_bias += sigma.azimuth_bias * drawn(random);
   flight.reel.scale += sigma.reel_scale * drawn(random);
+  flight.dispersion = {};
   return flight;
 }
 

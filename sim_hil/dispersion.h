@@ -12,8 +12,8 @@ namespace tautline::sim {
 
 struct SimConfig;
 
-/// Standard deviations about the configured values. All zero by default: every flight has the same
-/// machine.
+/// Standard deviations of normal distributions about the configured values, which are then cut off
+/// at two of them (0.88 of it is left). All zero by default: every flight has the same machine.
 struct DispersionConfig {
   double tension{0.0};         ///< Of the pull on the tether [N].
   double elevation_bias{0.0};  ///< [rad]
@@ -22,16 +22,18 @@ struct DispersionConfig {
 
   template <class Visitor>
   void fields(Visitor& v) {
-    v.field("tension_n", tension, Range{0, 5}, "of vehicle.tension_n");
-    v.field("elevation_bias_rad", elevation_bias, Range{0, 0.2}, "of sensors.elevation_bias_rad");
-    v.field("azimuth_bias_rad", azimuth_bias, Range{0, 0.5}, "of sensors.azimuth_bias_rad");
-    v.field("reel_scale", reel_scale, Range{0, 0.2}, "of reel.scale");
+    v.field("tension_n", tension, Range{0, 5},
+            "standard deviation between flights, cut off at two: of vehicle.tension_n ...");
+    v.field("elevation_bias_rad", elevation_bias, Range{0, 0.2},
+            "... of sensors.elevation_bias_rad ...");
+    v.field("azimuth_bias_rad", azimuth_bias, Range{0, 0.5}, "... of sensors.azimuth_bias_rad ...");
+    v.field("reel_scale", reel_scale, Range{0, 0.1}, "... of reel.scale");
   }
 };
 
-/// The machine of the flight with this seed: each value from a normal distribution that is cut off
-/// at two standard deviations, as what lies beyond is seen before take-off. The pull stays
-/// positive. Without dispersion the config as it is. Other randomness of the flight is not touched.
+/// The machine of the flight with this seed, with no dispersion left. What lies beyond two standard
+/// deviations would be seen before take-off and is not drawn; a pull is never negative. Gusts and
+/// noise of the flight are the same with and without dispersion.
 /// Real-time safe: no allocation, no locks, no exceptions.
 [[nodiscard]] SimConfig dispersed(const SimConfig& config, std::uint64_t seed) noexcept;
 

@@ -15,8 +15,8 @@ namespace tautline::sim {
 
 class FaultInbox {
  public:
-  /// Joins LCM. Throws InputError (exit code kTimeout) with the command that mends it. Not
-  /// real-time safe: start-up only.
+  /// Joins LCM. Throws InputError: kTimeout without a multicast route, with the command that mends
+  /// it; kUsage for a URL that LCM does not know. Not real-time safe: start-up only.
   FaultInbox(const std::string& lcm_url, SimDevice device);
 
   /// Schedules what has come since the last call; a fault that this machine cannot have is refused

@@ -19,9 +19,10 @@
 #include "common/toml/config_file.h"
 #include "lcmtypes/channels.h"
 #include "sim_hil/can_link.h"
+#include "sim_hil/dispersion.h"
+#include "sim_hil/fault.h"
 #include "sim_hil/fault_file.h"
 #include "sim_hil/fault_inbox.h"
-#include "sim_hil/fault_schedule.h"
 #include "sim_hil/pty_link.h"
 #include "sim_hil/real_time_server.h"
 #include "sim_hil/sim_config.h"
@@ -69,7 +70,8 @@ void addOptions(CLI::App& app, Options& o) {
   app.add_option("--scene", o.scene,
                  "*.scene.toml: room, obstacles, reel, start (default: an open floor)");
   app.add_option("--config", o.config, "properties of the machine, see config/sim.toml");
-  app.add_option("--seed", o.seed, "of gusts and sensor noise")->capture_default_str();
+  app.add_option("--seed", o.seed, "of gusts, sensor noise and, with [dispersion], of the machine")
+      ->capture_default_str();
   app.add_option("--rate-hz", o.rate_hz, "telemetry rate, whatever the client asks for")
       ->check(CLI::Range(0.1, 500.0));
   app.add_option("--duration", o.duration_s, "stop after this many seconds; 0: run until stopped")
@@ -189,11 +191,11 @@ int run(const Options& o) {
   chooseDevice(o, config);
   if (o.rate_hz > 0.0) config.fotokite.forced_rate = config.tautline.sensor_rate = o.rate_hz;
   const Scene scene = o.scene.empty() ? openFloor() : sceneInWorld(readScene(o.scene));
-  const std::string effective = dumpConfig(config);
   if (o.print_config) {
-    std::fputs(effective.c_str(), stdout);
+    std::fputs(dumpConfig(config).c_str(), stdout);
     return static_cast<int>(ExitCode::kOk);
   }
+  config = dispersed(config, o.seed);  // what flies, and so what PARAMS says
   Simulator simulator(config, scene, o.seed);
   inject(simulator, chooseFaults(o, config.device));
   if (o.check_config) {
@@ -201,7 +203,7 @@ int run(const Options& o) {
     return static_cast<int>(ExitCode::kOk);
   }
   const std::unique_ptr<ByteLink> link = openLink(o, config.device);
-  TruthPublisher publisher(o.no_lcm ? std::string() : o.lcm_url, effective);
+  TruthPublisher publisher(o.no_lcm ? std::string() : o.lcm_url, dumpConfig(config));
   if (!publisher.warning().empty()) {
     std::fprintf(stderr, "tautline-sim: warning: %s\n", publisher.warning().c_str());
   }

@@ -14,8 +14,7 @@ namespace tautline::sim {
 
 namespace {
 
-SimConfig machineOf(const SimConfig& configured, std::uint64_t seed) {
-  SimConfig config = dispersed(configured, seed);
+SimConfig effective(SimConfig config) {
   if (config.device != SimDevice::kFotokite) config.reel.metres_per_count = bus::kCountUnit;
   return config;
 }
@@ -107,7 +106,7 @@ std::unique_ptr<Machine> makeMachine(const SimConfig& config, Plant& plant) {
 /// Everything but the constructor: real-time safe: no allocation, no locks, no exceptions.
 struct Simulator::Impl {
   Impl(const SimConfig& config, const Scene& world, std::uint64_t seed)
-      : plant(machineOf(config, seed), world, seed), machine(makeMachine(config, plant)) {}
+      : plant(effective(config), world, seed), machine(makeMachine(config, plant)) {}
 
   /// Commands that were held back on the uplink reach the machine.
   void deliver() noexcept {
@@ -124,7 +123,7 @@ struct Simulator::Impl {
 };
 
 Simulator::Simulator(const SimConfig& config, const Scene& world, std::uint64_t seed)
-    : impl_(std::make_unique<Impl>(config, world, seed)) {}
+    : impl_(std::make_unique<Impl>(dispersed(config, seed), world, seed)) {}
 Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;

@@ -28,8 +28,9 @@ namespace tautline::sim {
 class Simulator {
  public:
   /// `world` is in W (sceneInWorld()); the drone stands at its start, by default 1 m in front (+z)
-  /// of the reel on the floor. The virtual clock starts at Time{}. Throws InputError if the scene
-  /// has more or larger obstacles than the plant takes. Not real-time safe: start-up only.
+  /// of the reel on the floor. The machine is dispersed(config, seed). The virtual clock starts at
+  /// Time{}. Throws InputError if the scene has more or larger obstacles than the plant takes. Not
+  /// real-time safe: start-up only.
   Simulator(const SimConfig& config, const Scene& world, std::uint64_t seed);
   ~Simulator();
   Simulator(Simulator&&) noexcept;

@@ -1,7 +1,5 @@
 #include "app/bench/bench_faults.h"
 
-#include <string>
-
 namespace tautline::bench {
 
 using sim::Fault;

@@ -160,7 +160,9 @@ void addFly(CLI::App& app, Options& options, ExitCode& result) {
       "fly", "Fly one mission; exit code 0 only if it was completed and the drone landed");
   verb->add_option("--mission", options.mission, "mission file")->required();
   verb->add_option("--scene", options.scene, "scene file")->required();
-  verb->add_option("--seed", options.seed, "of gusts and sensor noise")->capture_default_str();
+  verb->add_option("--seed", options.seed,
+                   "of gusts, sensor noise and, with [dispersion], of the machine")
+      ->capture_default_str();
   verb->add_option("--station-config", options.station_config, "station's TOML file");
   verb->add_option("--sim-config", options.sim_config, "simulator's TOML file");
   verb->add_option("--log", options.log, "write an LCM log for `tautline report`");

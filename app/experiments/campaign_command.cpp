@@ -120,8 +120,8 @@ void addCampaignCommand(CLI::App& app, ExitCode& result) {
   verb->add_option("--seed", c.seed, "Of the first flight; the others' follow")
       ->capture_default_str();
   verb->add_option("--inflation", options->inflation,
-                   "The map's obstacles are grown by this much [m]: what is flown round is that "
-                   "much thinner, on each side")
+                   "The map's obstacles and its border are grown by this much [m]: what is flown "
+                   "round is that much thinner on each side, the room that much wider")
       ->capture_default_str();
   verb->add_option("--goal-tolerance", options->goal_tolerance,
                    "A finished flight truly ends this near the last waypoint [m]")

@@ -57,6 +57,10 @@ struct CampaignTally {
   [[nodiscard]] std::int64_t failed() const noexcept {
     return flights() - ends[static_cast<std::size_t>(FlightEnd::kFinished)];
   }
+  /// Of the flights; NaN without any.
+  [[nodiscard]] double finishedShare() const noexcept {
+    return 1.0 - static_cast<double>(failed()) / static_cast<double>(flights());
+  }
   [[nodiscard]] Interval interval() const { return clopperPearson(failed(), flights()); }
   void add(const FlightVerdict& verdict);
 };

@@ -59,7 +59,7 @@ nlohmann::json fly(const Setup& setup, const Side& side, const Hover& hover) {
     config.sim.sensors.elevation_bias = 0.0;
     config.sim.sensors.azimuth_bias = 0.0;
     config.sim.reel.scale = 1.0;
-    config.sim.dispersion = {};
+    config.sim.dispersion = {.tension = config.sim.dispersion.tension};
   }
   const Eigen::Vector3d target = hover.target();
   const TrackedFlight flight = flyTracked(config, *missionThrough({target}, kHold), kLimit);

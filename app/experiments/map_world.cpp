@@ -110,8 +110,9 @@ double groundBelow(const Eigen::Vector3d& p, const Scene& scene) {
   return ground;
 }
 
-/// Walls, ceiling and floor are occupied like the obstacles: the real ones stand behind the map's
-/// border as obstacles stand inside their voxels. What stands against them goes on up to them.
+/// A planner goes nowhere beyond the map's border, so what is there is occupied like the obstacles,
+/// and the real walls, ceiling and floor stand behind it as things stand inside their voxels. What
+/// stands against the border goes on up to them.
 void moveBorderOut(Scene& scene, double inflation) {
   for (Box& box : scene.boxes) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -178,9 +179,8 @@ Scene worldOf(const VoxelMap& map, const Eigen::Vector3d& reel, const MissionPla
   scene.max =
       map.origin + map.resolution * Eigen::Vector3d(map.shape.nx, map.shape.ny, map.shape.nz);
   scene.boxes = mergedBoxes(solidGrid(map, inflation));
-  if (map.solid_border) {
-    moveBorderOut(scene, inflation);
-  } else {
+  moveBorderOut(scene, inflation);
+  if (!map.solid_border) {
     scene.min -= Eigen::Vector3d(kOpenAir, 0.0, kOpenAir);
     scene.max += Eigen::Vector3d::Constant(kOpenAir);
   }

@@ -39,12 +39,12 @@ struct SolidGrid {
 /// Of the tether's attachment over what the parked drone stands on [m].
 inline constexpr double kFoot = 0.1;
 
-/// The plant's world in W. Its room is the map's extent if the map is walled (solid_border), and
-/// wider by the inflation on all sides: walls, ceiling and floor are occupied like the obstacles.
-/// Otherwise it is 100 m wider on all sides but the floor. The drone is parked on what is below the
-/// mission's first waypoint. `reel` is the outlet in M; `inflation` as of solidGrid(). Throws
-/// InputError if there are more boxes than the plant takes, or the inflation is half a cell or
-/// more.
+/// The plant's world in W. Its room is the map's extent, widened by the inflation on all sides
+/// (walls, ceiling and floor are occupied like the obstacles), if the map is walled (solid_border).
+/// Otherwise only the floor is there, and 100 m of air round the map. The drone is parked on what
+/// is below the mission's first waypoint. `reel` is the outlet in M; `inflation` as of solidGrid().
+/// Throws InputError if there are more boxes than the plant takes, or the inflation is half a cell
+/// or more.
 [[nodiscard]] Scene worldOf(const planning::VoxelMap& map, const Eigen::Vector3d& reel,
                             const MissionPlan& mission, double inflation);
 

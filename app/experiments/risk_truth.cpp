@@ -8,14 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "app/experiments/staircase_paths.h"
 #include "app/experiments/truth_paths.h"
 #include "common/toml/config_file.h"
 
 namespace tautline::experiments {
 namespace {
-
-constexpr std::array kStations{"as published", "ours"};
 
 TruthOptions optionsOf(const Setup& setup) {
   TruthOptions options{.seed = setup.seed};
@@ -29,20 +26,20 @@ TruthOptions optionsOf(const Setup& setup) {
 
 CampaignFlight whoFlies(const Setup& setup, std::size_t station) {
   CampaignFlight who;
-  who.station = station == 0 ? publishedDemonstration(setup) : setup.tautline;
+  who.station = demonstrationStation(setup, station);
   who.plant = setup.plant;
   return who;
 }
 
 std::string trialName(std::size_t station, const TruthCase& c) {
-  return fmt::format("{} {}", kStations[station], c.name());
+  return fmt::format("{} {}", kStationNames[station], c.name());
 }
 
 std::vector<Trial> trials(const Setup& setup) {
   const auto params = std::make_shared<const planning::RiskParams>(
       loadConfig<planning::RiskParams>(setup.folder / "../risk/dissertation.toml"));
   std::vector<Trial> all;
-  for (std::size_t station = 0; station < kStations.size(); ++station) {
+  for (std::size_t station = 0; station < kStationNames.size(); ++station) {
     for (const TruthCase& c : truthCases(optionsOf(setup))) {
       all.push_back({trialName(station, c), [&setup, params, station, c] {
                        return toJson(
@@ -111,7 +108,7 @@ Sheet pathsSheet(const std::array<Side, 2>& sides) {
   for (std::size_t s = 0; s < sides.size(); ++s) {
     for (const TruthPath& p : sides[s].paths) {
       const Interval i = clopperPearson(p.failed(), p.flights());
-      std::vector<std::string> row{kStations[s],
+      std::vector<std::string> row{kStationNames[s],
                                    std::to_string(p.map),
                                    p.planner,
                                    std::to_string(p.points.size()),
@@ -136,7 +133,7 @@ Sheet measuresSheet(const std::array<Side, 2>& sides) {
     for (const Measure& m : *sides[s].measures) {
       std::int64_t flights = 0;
       for (const Forecast& f : m.forecasts) flights += f.flights;
-      sheet.rows.push_back({kStations[s], m.name, std::to_string(flights),
+      sheet.rows.push_back({kStationNames[s], m.name, std::to_string(flights),
                             fmt::format("{:.4f}", brierScore(m.forecasts)),
                             fmt::format("{:.4f}", calibrationError(m.forecasts))});
     }
@@ -146,7 +143,7 @@ Sheet measuresSheet(const std::array<Side, 2>& sides) {
 
 Picture reliabilityPicture(const Side& side, std::size_t station) {
   plot::Figure figure;
-  figure.title = fmt::format("Predicted and simulated failures, {}", kStations[station]);
+  figure.title = fmt::format("Predicted and simulated failures, {}", kStationNames[station]);
   figure.rows = 2;
   figure.columns = 2;
   figure.width_px = 1000;

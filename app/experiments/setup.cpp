@@ -22,6 +22,14 @@ std::string Setup::fingerprint() const {
   return hashText(fnv1a(text));
 }
 
+StationConfig demonstrationStation(const Setup& setup, std::size_t station) {
+  if (station != 0) return setup.tautline;
+  StationConfig published = setup.as_published;
+  published.core.localizer.variant = LocalizerVariant::kAsPublishedCode;
+  published.core.control.law = Law::kPosition;
+  return published;
+}
+
 void pullWith(bench::LockstepConfig& flight, double tension) {
   CoreConfig& core = flight.station.core;
   flight.sim.vehicle.tension = tension;

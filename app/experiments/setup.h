@@ -4,6 +4,8 @@
 /// What all experiments share: one plant, the two stations that are compared on it, and the
 /// published figures (config/experiments). Not real-time safe: start-up only.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -33,6 +35,13 @@ struct Setup {
         .station = station, .sim = plant, .world = world, .map_known = true, .seed = seed + trial};
   }
 };
+
+/// The two stations of a comparison, by index.
+inline constexpr std::array kStationNames{"as published", "ours"};
+
+/// For planned paths: the published software as it flew its integrated demonstration, with all of
+/// its low-level motion suite, so with the corrected localizer, and position control; or ours.
+[[nodiscard]] StationConfig demonstrationStation(const Setup& setup, std::size_t station);
 
 /// Lets vehicle and station of a flight use another pull on the tether [N] than the set-up's, as a
 /// user would who has set the vehicle so.

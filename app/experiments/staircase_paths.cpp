@@ -1,15 +1,9 @@
 #include "app/experiments/staircase_paths.h"
 
 #include "app/experiments/map_world.h"
+#include "common/error.h"
 
 namespace tautline::experiments {
-namespace {
-
-/// The vehicle's radius in plant.toml: the planner's map is grown by it.
-constexpr double kInflation = 0.15;  // [m]
-
-}  // namespace
-
 std::shared_ptr<const Stairs> planStairs(const Setup& setup) {
   const auto config = setup.folder / "..";
   planning::RiskArguments arguments;
@@ -18,26 +12,20 @@ std::shared_ptr<const Stairs> planStairs(const Setup& setup) {
   const auto stairs = std::make_shared<Stairs>();
   stairs->space = planning::loadRiskSpace(arguments, planning::Progress{});
   const planning::VoxelMap& map = *stairs->space.space.map;
+  const double radius = setup.plant.vehicle.radius;  // the planner's map is grown by it
   for (std::size_t v = 0; v < kViewpoints.size(); ++v) {
     PlannedPath& path = stairs->paths[v];
     path = planPath(stairs->space, "directional", *map.start, kViewpoints[v].goal);
     TAUTLINE_CHECK(path.found());
-    for (std::size_t station = 0; station < kStairStations.size(); ++station) {
+    for (std::size_t station = 0; station < kStationNames.size(); ++station) {
       CampaignFlight& flight = stairs->flights[station][v];
-      flight.station = station == 0 ? publishedDemonstration(setup) : setup.tautline;
+      flight.station = demonstrationStation(setup, station);
       flight.plant = setup.plant;
       flight.mission = &path.mission;
-      flight.world = worldOf(map, *map.reel, *path.mission.plan, kInflation);
+      flight.world = worldOf(map, *map.reel, *path.mission.plan, radius);
     }
   }
   return stairs;
-}
-
-StationConfig publishedDemonstration(const Setup& setup) {
-  StationConfig station = setup.as_published;
-  station.core.localizer.variant = LocalizerVariant::kAsPublishedCode;
-  station.core.control.law = Law::kPosition;
-  return station;
 }
 
 nlohmann::json flyStairs(const CampaignFlight& flight, const StairTrial& trial) {

@@ -22,13 +22,12 @@ namespace tautline::experiments {
 
 struct Viewpoint {
   const char* name;
-  Eigen::Vector3d goal;  // M [m]
+  Eigen::Vector3d goal;  ///< M [m].
   double reward;
-  // Published, chapter 7: risk, utility, and successes of ten trials.
-  double risk;
-  double utility;
-  int successes;
-  double wanted;  // of our success
+  double risk;     ///< Published, chapter 7, as the next two.
+  double utility;  ///< Reward over risk.
+  int successes;   ///< Of kPublishedTrials.
+  double wanted;   ///< Share of our flights that finishes, at least.
   plot::Colour colour;
 };
 inline const std::array kViewpoints{
@@ -36,24 +35,31 @@ inline const std::array kViewpoints{
     Viewpoint{"green", {3.8, 2.6, 1.4}, 0.9, 0.575, 1.565, 4, 0.95, plot::Colour::kGreen}};
 inline constexpr int kPublishedTrials = 10;
 
-inline constexpr std::array kStairStations{"as published", "ours"};
-
 /// Of each station and viewpoint.
 using StairTallies =
-    std::array<std::array<CampaignTally, kViewpoints.size()>, kStairStations.size()>;
+    std::array<std::array<CampaignTally, kViewpoints.size()>, kStationNames.size()>;
 
 /// Map, planned paths, and who flies them.
 struct Stairs {
+  Stairs() = default;
+  Stairs(const Stairs&) = delete;  // `flights` point into `paths`
+  Stairs& operator=(const Stairs&) = delete;
+
   planning::RiskSpace space;
   std::array<PlannedPath, kViewpoints.size()> paths;
-  /// [station][viewpoint]; their missions are those of `paths`.
-  std::array<std::array<CampaignFlight, kViewpoints.size()>, kStairStations.size()> flights;
+  std::array<std::array<CampaignFlight, kViewpoints.size()>, kStationNames.size()>
+      flights;  ///< [station][viewpoint]
 };
+/// Throws InputError for files of the set-up; that there is a path to each viewpoint is taken for
+/// granted.
 [[nodiscard]] std::shared_ptr<const Stairs> planStairs(const Setup& setup);
 
-/// The published software as it flew there: all of the low-level motion suite, so with the
-/// corrected localizer, and position control.
-[[nodiscard]] StationConfig publishedDemonstration(const Setup& setup);
+/// Calls visit(station, viewpoint) for all of them.
+template <class Visit>
+void forEachStairs(Visit visit) {
+  for (std::size_t station = 0; station < kStationNames.size(); ++station)
+    for (std::size_t v = 0; v < kViewpoints.size(); ++v) visit(station, v);
+}
 
 /// Some flights: how each ended and, on request, its way.
 struct StairTrial {
@@ -62,6 +68,7 @@ struct StairTrial {
   bool tracks{false};
   std::optional<double> pull{};  ///< On the tether, other than the plant's [N].
 };
+/// {"ends": verdicts of toJson(), "tracks": true ways in W [m], two points a second}.
 [[nodiscard]] nlohmann::json flyStairs(const CampaignFlight& flight, const StairTrial& trial);
 /// Adds what flyStairs() returned.
 void addEnds(const nlohmann::json& result, CampaignTally& tally);

@@ -7,18 +7,16 @@
 namespace tautline::experiments {
 namespace {
 
-constexpr std::array kPulls{0.25, 0.3,  0.35, 0.4, 0.45, 0.5, 0.6,
-                            0.7,  0.85, 1.0,  1.2, 1.5,  2.0};  // [N]
-constexpr std::int64_t kFlights = 20;                           // of a point
+const std::vector<double> kQuickPulls{0.3, 0.45, 1.0};  // [N]
+const std::vector<double> kPulls{0.25, 0.3,  0.35, 0.4, 0.45, 0.5, 0.6,
+                                 0.7,  0.85, 1.0,  1.2, 1.5,  2.0};
+
+const std::vector<double>& pulls(const Setup& setup) { return setup.quick ? kQuickPulls : kPulls; }
+/// Of a point.
+std::int64_t flightCount(const Setup& setup) { return setup.quick ? 5 : 20; }
 
 std::string trialName(double pull, std::size_t station, std::size_t viewpoint) {
-  return fmt::format("{:g} N {} {}", pull, kStairStations[station], kViewpoints[viewpoint].name);
-}
-
-template <class Visit>
-void forEachLine(Visit visit) {
-  for (std::size_t station = 0; station < kStairStations.size(); ++station)
-    for (std::size_t v = 0; v < kViewpoints.size(); ++v) visit(station, v);
+  return fmt::format("{:g} N {} {}", pull, kStationNames[station], kViewpoints[viewpoint].name);
 }
 
 CampaignTally tallyOf(const Results& results, double pull, std::size_t station,
@@ -28,13 +26,13 @@ CampaignTally tallyOf(const Results& results, double pull, std::size_t station,
   return tally;
 }
 
-Sheet endsSheet(const Results& results) {
+Sheet endsSheet(const Setup& setup, const Results& results) {
   Sheet sheet{"pull_ends", {"<station", "<path", "pull [N]"}, {}};
   for (const auto& end : kFlightEndNames) sheet.columns.emplace_back(end.name);
-  forEachLine([&](std::size_t station, std::size_t v) {
-    for (const double pull : kPulls) {
+  forEachStairs([&](std::size_t station, std::size_t v) {
+    for (const double pull : pulls(setup)) {
       const CampaignTally tally = tallyOf(results, pull, station, v);
-      std::vector<std::string> row{kStairStations[station], kViewpoints[v].name,
+      std::vector<std::string> row{kStationNames[station], kViewpoints[v].name,
                                    fmt::format("{:g}", pull)};
       for (const std::int64_t count : tally.ends) row.push_back(std::to_string(count));
       sheet.rows.push_back(std::move(row));
@@ -43,27 +41,25 @@ Sheet endsSheet(const Results& results) {
   return sheet;
 }
 
-plot::Figure successFigure(const Results& results) {
+plot::Figure successFigure(const Setup& setup, const Results& results) {
   plot::Panel panel{.title = "Share of flights that finish",
                     .x = {.label = "pull on the tether [N]", .logarithmic = true},
                     .y = {.label = "share", .limits = plot::Limits{-0.03, 1.05}}};
-  forEachLine([&](std::size_t station, std::size_t v) {
-    plot::Series line{.name = fmt::format("{}, {}", kViewpoints[v].name, kStairStations[station]),
+  forEachStairs([&](std::size_t station, std::size_t v) {
+    plot::Series line{.name = fmt::format("{}, {}", kViewpoints[v].name, kStationNames[station]),
                       .points = {},
                       .style = station == 0 ? plot::Style::kLinePoints : plot::Style::kDashed,
                       .colour = kViewpoints[v].colour,
                       .width = 1.6};
-    for (const double pull : kPulls) {
-      const CampaignTally tally = tallyOf(results, pull, station, v);
-      line.points.push_back(
-          {pull, 1.0 - static_cast<double>(tally.failed()) / static_cast<double>(tally.flights())});
+    for (const double pull : pulls(setup)) {
+      line.points.push_back({pull, tallyOf(results, pull, station, v).finishedShare()});
     }
     panel.series.push_back(std::move(line));
   });
   for (const Viewpoint& view : kViewpoints) {
     const double share = static_cast<double>(view.successes) / kPublishedTrials;
     panel.series.push_back({.name = fmt::format("{}, published", view.name),
-                            .points = {{kPulls.front(), share}, {kPulls.back(), share}},
+                            .points = {{pulls(setup).front(), share}, {pulls(setup).back(), share}},
                             .style = plot::Style::kDotted,
                             .colour = view.colour});
   }
@@ -75,9 +71,9 @@ plot::Figure successFigure(const Results& results) {
 std::vector<Trial> stairPullTrials(const Setup& setup,
                                    const std::shared_ptr<const Stairs>& stairs) {
   std::vector<Trial> all;
-  forEachLine([&](std::size_t station, std::size_t v) {
-    for (const double pull : kPulls) {
-      const StairTrial trial{.seed = setup.seed, .flights = kFlights, .pull = pull};
+  forEachStairs([&](std::size_t station, std::size_t v) {
+    for (const double pull : pulls(setup)) {
+      const StairTrial trial{.seed = setup.seed, .flights = flightCount(setup), .pull = pull};
       all.push_back({trialName(pull, station, v), [stairs, station, v, trial] {
                        return flyStairs(stairs->flights[station][v], trial);
                      }});
@@ -86,14 +82,14 @@ std::vector<Trial> stairPullTrials(const Setup& setup,
   return all;
 }
 
-void addStairPulls(const Results& results, Findings& findings) {
-  findings.sheets.push_back(endsSheet(results));
+void addStairPulls(const Setup& setup, const Results& results, Findings& findings) {
+  findings.sheets.push_back(endsSheet(setup, results));
   findings.pictures.push_back(
       {"pull",
        fmt::format("Share of {} flights that finish, over the pull that the vehicle keeps on its "
-                   "tether and the station knows.",
-                   kFlights),
-       successFigure(results)});
+                   "tether. Our station is told it; the published correction has no use for it.",
+                   flightCount(setup)),
+       successFigure(setup, results)});
 }
 
 }  // namespace tautline::experiments

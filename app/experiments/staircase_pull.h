@@ -12,11 +12,12 @@
 
 namespace tautline::experiments {
 
-/// Both stations, both paths; vehicle and station know the pull.
+/// Both stations, both paths. Our station is told the pull; the published correction has no use for
+/// it. The same machines at each pull.
 [[nodiscard]] std::vector<Trial> stairPullTrials(const Setup& setup,
                                                  const std::shared_ptr<const Stairs>& stairs);
 
 /// Adds the picture of success over the pull, and the table of how flights ended.
-void addStairPulls(const Results& results, Findings& findings);
+void addStairPulls(const Setup& setup, const Results& results, Findings& findings);
 
 }  // namespace tautline::experiments

@@ -322,8 +322,8 @@ Findings judge(const Setup& setup, const Results& results) {
          .tautline = ours.back().by_contacts[c],
          .as_published_band = around(kPublishedByContacts[c]),
          .tautline_band = Band{.max = kGoalByContacts[c]},
-         .shortfall = c == 1 ? "the executor goes over to the planned contact before the tether is "
-                               "at its edge"
+         .shortfall = c == 1 ? "the tether comes to its edge higher than planned, and more of it "
+                               "hangs behind the contact than the straight line there"
                              : "",
          .shortfall_limit = Band{.max = 1.25 * kGoalByContacts[c]}});
   }

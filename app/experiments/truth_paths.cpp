@@ -13,11 +13,10 @@ namespace {
 
 using planning::RiskElement;
 
-constexpr int kLevels = 8;           // of clutter
-constexpr int kFewestThings = 4;     // in the room of the first level
-constexpr int kThingsALevel = 4;     // more in each further one
-constexpr double kFar = 2.0;         // of a goal from the start [m]
-constexpr double kInflation = 0.15;  // the plant's vehicle's radius [m]
+constexpr int kLevels = 8;        // of clutter
+constexpr int kFewestThings = 4;  // in the room of the first level
+constexpr int kThingsALevel = 4;  // more in each further one
+constexpr double kFar = 2.0;      // of a goal from the start [m]
 
 std::uint32_t roomSeed(int map, std::uint64_t seed) {
   return static_cast<std::uint32_t>(seed * 1000) + static_cast<std::uint32_t>(map);
@@ -92,11 +91,13 @@ TruthPath flyTruthCase(const TruthCase& c, const TruthOptions& options,
   result.prediction = path.prediction;
   CampaignFlight flight = who;
   flight.mission = &path.mission;
-  flight.world = worldOf(map, *map.reel, *path.mission.plan, kInflation);
+  flight.world = worldOf(map, *map.reel, *path.mission.plan, who.plant.vehicle.radius);
+  // A seed is a machine: other ones for every goal, the same for both planners and both stations.
+  const std::int64_t first = (std::int64_t{c.map} * options.goals + c.goal) * options.flights;
   for (std::int64_t i = 0; i < options.flights; ++i) {
     const FlightVerdict verdict =
-        flyPlanned(flight.config(options.seed + static_cast<std::uint64_t>(i)), *path.mission.plan,
-                   flight.goal_tolerance);
+        flyPlanned(flight.config(options.seed + static_cast<std::uint64_t>(first + i)),
+                   *path.mission.plan, flight.goal_tolerance);
     ++result.ends[static_cast<std::size_t>(verdict.end)];
   }
   return result;

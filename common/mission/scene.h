@@ -81,7 +81,7 @@ struct Scene {
 /// What parseScene() reads back as the same scene, bit for bit but for the hash.
 [[nodiscard]] std::string sceneText(const Scene& scene);
 
-/// The same scene with the reel outlet as origin, so in W; its floor is then at -reel.y.
+/// The same scene with the reel outlet as origin, so in W; its floor is then at floor - reel.y.
 [[nodiscard]] Scene sceneInWorld(const Scene& scene);
 
 /// First stretch of the line p-q in the interior of the obstacle, or nothing. Merely touching a

@@ -1,10 +1,13 @@
 #include "sim_hil/dispersion.h"
 
+#include <chrono>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "sim_hil/sim_config.h"
+#include "sim_hil/simulator.h"
+#include "sim_hil/test/flight_rig.h"
 
 namespace tautline::sim {
 namespace {
@@ -71,6 +74,27 @@ TEST(Dispersion, TheSameSeedIsTheSameMachine) {
   const SimConfig config = dispersedConfig();
   EXPECT_EQ(dispersed(config, 7).vehicle.tension, dispersed(config, 7).vehicle.tension);
   EXPECT_NE(dispersed(config, 7).vehicle.tension, dispersed(config, 8).vehicle.tension);
+}
+
+TEST(Dispersion, IsDrawnOnce) {
+  const SimConfig flight = dispersed(dispersedConfig(), 7);
+  EXPECT_EQ(dispersed(flight, 7).vehicle.tension, flight.vehicle.tension);
+  EXPECT_EQ(dispersed(flight, 8).reel.scale, flight.reel.scale);
+}
+
+TEST(Dispersion, IsWhatTheSimulatorFliesInTheSameAir) {
+  const SimConfig config = dispersedConfig();
+  SimConfig same_for_all = config;
+  same_for_all.dispersion = {};
+  for (const std::uint64_t seed : {3U, 4U}) {
+    Simulator flight(config, emptyRoom(), seed);
+    Simulator without(same_for_all, emptyRoom(), seed);
+    EXPECT_EQ(flight.truth().reel_scale, dispersed(config, seed).reel.scale);
+    EXPECT_NE(flight.truth().reel_scale, without.truth().reel_scale);
+    flight.advanceTo(Time{} + std::chrono::seconds(1));
+    without.advanceTo(Time{} + std::chrono::seconds(1));
+    EXPECT_EQ(flight.truth().gust, without.truth().gust);
+  }
 }
 
 TEST(Dispersion, APullIsNeverNegative) {

@@ -109,20 +109,28 @@ TEST(HeardFlight, RatesOfTheModeBeforeDoNotCountInTheNext) {
     return message.first == channel::kStationState;
   });
   ASSERT_NE(standby, sent.end());
-  for (const bool in_its_cycle : {false, true}) {
-    HeardFlight heard;
-    for (const auto& [channel, bytes] : sent) {
-      if (heard.output().command.length_rate != 0.0) break;
-      heard.take(channel, bytes);
-    }
-    ASSERT_NE(heard.output().command.length_rate, 0.0);
-    ASSERT_NE(heard.output().supervision.mode, Mode::kStandby);
-    if (!in_its_cycle) heard.goOn();
-    heard.take(channel::kStationState, standby->second);
-    EXPECT_EQ(heard.output().supervision.mode, Mode::kStandby);
-    EXPECT_EQ(heard.output().command.length_rate != 0.0, in_its_cycle)
-        << "rates that were told in the cycle of the change are the new mode's";
+  HeardFlight moving;
+  const std::vector<std::uint8_t>* state = nullptr;
+  for (const auto& [channel, bytes] : sent) {
+    if (moving.output().command.length_rate != 0.0) break;
+    if (channel == channel::kStationInput) moving.goOn();
+    if (channel == channel::kStationState) state = &bytes;
+    moving.take(channel, bytes);
   }
+  ASSERT_NE(moving.output().command.length_rate, 0.0);
+  ASSERT_NE(moving.output().supervision.mode, Mode::kStandby);
+
+  HeardFlight in_its_cycle = moving;
+  in_its_cycle.take(channel::kStationState, standby->second);
+  EXPECT_EQ(in_its_cycle.output().supervision.mode, Mode::kStandby);
+  EXPECT_NE(in_its_cycle.output().command.length_rate, 0.0) << "the new mode's";
+
+  HeardFlight later = moving;
+  later.goOn();
+  later.take(channel::kStationState, *state);
+  EXPECT_NE(later.output().command.length_rate, 0.0) << "the mode is the same, rates hold";
+  later.take(channel::kStationState, standby->second);
+  EXPECT_EQ(later.output().command.length_rate, 0.0) << "those of the mode before";
 }
 
 TEST(HeardFlight, BeginsWithBothProgramsAndIgnoresDamage) {

@@ -118,7 +118,11 @@ TEST(WorldOfMap, WallsAreAsFarBehindTheBorderAsThingsAreInsideTheirVoxels) {
   EXPECT_TRUE(world.boxes[0].min.isApprox(Eigen::Vector3d(-0.15, -0.15, 1.75)));
   EXPECT_TRUE(world.boxes[0].max.isApprox(Eigen::Vector3d(0.25, 0.25, 2.15)));
   map.solid_border = false;
-  EXPECT_NEAR(worldOf(map, map.origin, mission, 0.15).floor, 0.0, 1e-12);
+  const Scene open = worldOf(map, map.origin, mission, 0.15);
+  EXPECT_NEAR(open.floor, -0.15, 1e-12);
+  EXPECT_NEAR(open.min.y(), -0.15, 1e-12);
+  EXPECT_LT(open.min.x(), -90.0);
+  EXPECT_GT(open.max.y(), 90.0);
 }
 
 TEST(WorldOfMap, RefusesMoreThanThePlantTakes) {
