@@ -55,16 +55,21 @@ if command -v lcm-logger >/dev/null; then
   lcm-logger --lcm-url="$lcm" -q "$work/flight.lcm" >/dev/null 2>&1 &
   logger=$!
 fi
-start_sim --device tautline-serial
-start_station "$work/station.toml" --device "$work/device"
-check "the bus comes up in order" soon 10 '"arming_blockers":"".*"link_fault":"none"'
-flight=ok
-for step in arm takeoff "navigate $config/missions/square.mission.toml" land; do
-  # shellcheck disable=SC2086
-  tautline $step --quiet || { flight="failed at $step"; break; }
+for attempt in 1 2; do
+  start_sim --device tautline-serial
+  start_station "$work/station.toml" --device "$work/device"
+  check "the bus comes up in order" soon 10 '"arming_blockers":"".*"link_fault":"none"'
+  flight=ok
+  for step in arm takeoff "navigate $config/missions/square.mission.toml" land; do
+    # shellcheck disable=SC2086
+    tautline $step --quiet 2>"$work/step.txt" || { flight="failed at $step: $(<"$work/step.txt")"; break; }
+  done
+  check "station ends with exit code 0" end "$station"
+  check "simulator ends with exit code 0" end "$sim"
+  # A machine that stood still for a moment is no fault of the flight, once.
+  [[ $attempt == 1 && $flight == *OVERRUNS* ]] || break
+  echo "note: flown again, $flight"
 done
-check "station ends with exit code 0" end "$station"
-check "simulator ends with exit code 0" end "$sim"
 if [[ $flight != ok ]] && grep -q 'too slow' "$work/sim.txt"; then
   # On the wall clock a machine that cannot run both programs at once proves nothing; the lock-step flight does.
   echo "SKIPPED: whole flight, $flight: $(grep -o '[0-9.]* s left out.*' "$work/sim.txt")"
