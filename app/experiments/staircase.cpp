@@ -26,12 +26,10 @@ std::string trialName(std::size_t station, std::size_t viewpoint, std::int64_t f
 
 template <class Visit>
 void forEachTrial(const Setup& setup, Visit visit) {
-  for (std::size_t station = 0; station < kStationNames.size(); ++station) {
-    for (std::size_t v = 0; v < kViewpoints.size(); ++v) {
-      for (std::int64_t first = 0; first < flightsOf(setup); first += kFlightsATrial)
-        visit(station, v, first, std::min(kFlightsATrial, flightsOf(setup) - first));
-    }
-  }
+  forEachStairs([&](std::size_t station, std::size_t v) {
+    for (std::int64_t first = 0; first < flightsOf(setup); first += kFlightsATrial)
+      visit(station, v, first, std::min(kFlightsATrial, flightsOf(setup) - first));
+  });
 }
 
 std::vector<Trial> trials(const Setup& setup) {
@@ -53,36 +51,31 @@ std::vector<Trial> trials(const Setup& setup) {
 /// Places are sorted by state of the path: where most flights end is where to look.
 Sheet endsSheet(const StairTallies& tallies) {
   Sheet sheet{"ends", {"<station", "<path", "<end", "waypoint", "flights"}, {}};
-  for (std::size_t station = 0; station < kStationNames.size(); ++station) {
-    for (std::size_t v = 0; v < kViewpoints.size(); ++v) {
-      std::map<std::pair<std::string, int>, int> counts;
-      for (const FlightVerdict& verdict : tallies[station][v].verdicts) {
-        std::string end = nameOf(verdict.end, kFlightEndNames);
-        if (verdict.end == FlightEnd::kAborted) end += " (" + verdict.why + ")";
-        ++counts[{end, verdict.waypoint}];
-      }
-      for (const auto& [what, count] : counts)
-        sheet.rows.push_back({kStationNames[station], kViewpoints[v].name, what.first,
-                              std::to_string(what.second), std::to_string(count)});
+  forEachStairs([&](std::size_t station, std::size_t v) {
+    std::map<std::pair<std::string, int>, int> counts;
+    for (const FlightVerdict& verdict : tallies[station][v].verdicts) {
+      std::string end = nameOf(verdict.end, kFlightEndNames);
+      if (verdict.end == FlightEnd::kAborted) end += " (" + verdict.why + ")";
+      ++counts[{end, verdict.waypoint}];
     }
-  }
+    for (const auto& [what, count] : counts)
+      sheet.rows.push_back({kStationNames[station], kViewpoints[v].name, what.first,
+                            std::to_string(what.second), std::to_string(count)});
+  });
   return sheet;
 }
 
 Sheet successSheet(const StairTallies& tallies) {
   Sheet sheet{
       "success", {"<station", "<path", "flights", "finished", "success", "95 % from", "to"}, {}};
-  for (std::size_t station = 0; station < kStationNames.size(); ++station) {
-    for (std::size_t v = 0; v < kViewpoints.size(); ++v) {
-      const CampaignTally& t = tallies[station][v];
-      const std::int64_t finished = t.flights() - t.failed();
-      const Interval i = clopperPearson(finished, t.flights());
-      sheet.rows.push_back({kStationNames[station], kViewpoints[v].name,
-                            std::to_string(t.flights()), std::to_string(finished),
-                            fmt::format("{:.4f}", t.finishedShare()), fmt::format("{:.4f}", i.low),
-                            fmt::format("{:.4f}", i.high)});
-    }
-  }
+  forEachStairs([&](std::size_t station, std::size_t v) {
+    const CampaignTally& t = tallies[station][v];
+    const std::int64_t finished = t.flights() - t.failed();
+    const Interval i = clopperPearson(finished, t.flights());
+    sheet.rows.push_back({kStationNames[station], kViewpoints[v].name, std::to_string(t.flights()),
+                          std::to_string(finished), fmt::format("{:.4f}", t.finishedShare()),
+                          fmt::format("{:.4f}", i.low), fmt::format("{:.4f}", i.high)});
+  });
   return sheet;
 }
 
@@ -124,8 +117,7 @@ std::string whyPublishedMisses(const Setup& setup, double share, const Band& ban
   if (band.has(share)) return "";
   return fmt::format(
       "the published correction does not know the pull: with {:g} N it makes one and the same "
-      "error "
-      "of all flights of a path, which here {}; the picture shows success over the pull",
+      "error of all flights of a path, which here {}; the picture shows success over the pull",
       setup.plant.vehicle.tension,
       share > band.max ? "leads past everything" : "leaves them too low over the floor");
 }

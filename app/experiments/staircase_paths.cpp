@@ -4,6 +4,7 @@
 #include "common/error.h"
 
 namespace tautline::experiments {
+
 std::shared_ptr<const Stairs> planStairs(const Setup& setup) {
   const auto config = setup.folder / "..";
   planning::RiskArguments arguments;
