@@ -7,6 +7,7 @@
 #include "app/experiments/real_logs.h"
 #include "app/experiments/reel_scale.h"
 #include "app/experiments/risk_truth.h"
+#include "app/experiments/rough_air.h"
 #include "app/experiments/servoing.h"
 #include "app/experiments/staircase.h"
 #include "app/experiments/tether_planning.h"
@@ -16,7 +17,8 @@ namespace tautline::experiments {
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> all{
       kLocalization, kPath1,           kPath2,     kReachableSpace, kTetherPlanning,
-      kServoing,     kContactWatching, kReelScale, kStaircase,      kRiskTruth,
+      kServoing,     kContactWatching, kReelScale, kStaircase,      kRoughAir,
+      kRiskTruth,
   };
   return all;
 }

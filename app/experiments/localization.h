@@ -9,4 +9,7 @@ namespace tautline::experiments {
 
 extern const Experiment kLocalization;
 
+/// Figure of the row that counts the hovers of which there is nothing to average.
+inline constexpr const char* kHoversMissing = "hovers that never came about";
+
 }  // namespace tautline::experiments

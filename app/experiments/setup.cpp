@@ -30,13 +30,17 @@ StationConfig demonstrationStation(const Setup& setup, std::size_t station) {
   return published;
 }
 
-void pullWith(bench::LockstepConfig& flight, double tension) {
-  CoreConfig& core = flight.station.core;
-  flight.sim.vehicle.tension = tension;
+void tellPull(StationConfig& station, double tension) {
+  CoreConfig& core = station.core;
   core.localizer.nominal_tension_n = tension;
   core.executor.target.nominal_tension_n = tension;
   core.control.composite.feed_forward.nominal_tension_n = tension;
   core.control.position.target.nominal_tension_n = tension;
+}
+
+void pullWith(bench::LockstepConfig& flight, double tension) {
+  flight.sim.vehicle.tension = tension;
+  tellPull(flight.station, tension);
 }
 
 Setup loadSetup(const std::filesystem::path& folder, bool quick, std::uint64_t seed) {

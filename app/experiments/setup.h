@@ -43,6 +43,9 @@ inline constexpr std::array kStationNames{"as published", "ours"};
 /// its low-level motion suite, so with the corrected localizer, and position control; or ours.
 [[nodiscard]] StationConfig demonstrationStation(const Setup& setup, std::size_t station);
 
+/// Tells a station what pull the vehicle keeps on the tether [N].
+void tellPull(StationConfig& station, double tension);
+
 /// Lets vehicle and station of a flight use another pull on the tether [N] than the set-up's, as a
 /// user would who has set the vehicle so.
 void pullWith(bench::LockstepConfig& flight, double tension);

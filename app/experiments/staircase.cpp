@@ -117,7 +117,8 @@ std::string whyPublishedMisses(const Setup& setup, double share, const Band& ban
   if (band.has(share)) return "";
   return fmt::format(
       "the published correction does not know the pull: with {:g} N it makes one and the same "
-      "error of all flights of a path, which here {}; the picture shows success over the pull",
+      "error of all flights of a path, which here {}; the picture shows success over the pull, "
+      "rough_air the published shares",
       setup.plant.vehicle.tension,
       share > band.max ? "leads past everything" : "leaves them too low over the floor");
 }
@@ -145,22 +146,13 @@ Findings judge(const Setup& setup, const Results& results) {
                              // Published from the rounded risk.
                              .tautline_band = Band{view.reward / (view.risk + 0.0005) - 0.0005,
                                                    view.reward / (view.risk - 0.0005) + 0.0005}});
-    const Interval published = clopperPearson(view.successes, kPublishedTrials);
-    const double as_published = tallies[0][v].finishedShare();
-    const double ours = tallies[1][v].finishedShare();
-    const Band trials_band{published.low, published.high};
-    findings.rows.push_back(
-        {.figure = fmt::format("{}: share of flights that finish", view.name),
-         .published = static_cast<double>(view.successes) / kPublishedTrials,
-         .as_published = as_published,
-         .tautline = ours,
-         .as_published_band = trials_band,
-         .tautline_band = Band{.min = view.wanted},
-         .note = fmt::format("{} flights each; the band of the published software is the exact 95 "
-                             "% interval of its ten trials.",
-                             flightsOf(setup)),
-         .shortfall =
-             ours >= view.wanted ? whyPublishedMisses(setup, as_published, trials_band) : ""});
+    Row success = successRow(view, tallies[0][v], tallies[1][v]);
+    success.tautline_band = Band{.min = view.wanted};
+    if (tallies[1][v].finishedShare() >= view.wanted) {
+      success.shortfall =
+          whyPublishedMisses(setup, *success.as_published, *success.as_published_band);
+    }
+    findings.rows.push_back(std::move(success));
   }
   findings.sheets.push_back(successSheet(tallies));
   findings.sheets.push_back(endsSheet(tallies));

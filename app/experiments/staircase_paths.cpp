@@ -1,5 +1,8 @@
 #include "app/experiments/staircase_paths.h"
 
+#include <fmt/format.h>
+
+#include "app/experiments/binomial.h"
 #include "app/experiments/map_world.h"
 #include "common/error.h"
 
@@ -48,6 +51,19 @@ nlohmann::json flyStairs(const CampaignFlight& flight, const StairTrial& trial) 
 
 void addEnds(const nlohmann::json& result, CampaignTally& tally) {
   for (const auto& end : result.at("ends")) tally.add(verdictFrom(end));
+}
+
+Row successRow(const Viewpoint& view, const CampaignTally& as_published,
+               const CampaignTally& ours) {
+  const Interval published = clopperPearson(view.successes, kPublishedTrials);
+  return {.figure = fmt::format("{}: share of flights that finish", view.name),
+          .published = static_cast<double>(view.successes) / kPublishedTrials,
+          .as_published = as_published.finishedShare(),
+          .tautline = ours.finishedShare(),
+          .as_published_band = Band{published.low, published.high},
+          .note = fmt::format("{} flights each; the band of the published software is the exact 95 "
+                              "% interval of its ten trials.",
+                              ours.flights())};
 }
 
 }  // namespace tautline::experiments

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include "app/experiments/experiment.h"
 #include "app/experiments/flight_campaign.h"
 #include "app/experiments/planned_path.h"
 #include "app/experiments/setup.h"
@@ -72,5 +73,10 @@ struct StairTrial {
 [[nodiscard]] nlohmann::json flyStairs(const CampaignFlight& flight, const StairTrial& trial);
 /// Adds what flyStairs() returned.
 void addEnds(const nlohmann::json& result, CampaignTally& tally);
+
+/// Share of flights that finish, against the exact 95 % interval of the published trials; `ours` is
+/// told, not judged.
+[[nodiscard]] Row successRow(const Viewpoint& view, const CampaignTally& as_published,
+                             const CampaignTally& ours);
 
 }  // namespace tautline::experiments
