@@ -16,9 +16,8 @@ namespace tautline::experiments {
 
 const std::vector<Experiment>& experiments() {
   static const std::vector<Experiment> all{
-      kLocalization, kPath1,           kPath2,     kReachableSpace, kTetherPlanning,
-      kServoing,     kContactWatching, kReelScale, kStaircase,      kRoughAir,
-      kRiskTruth,
+      kLocalization,    kPath1,     kPath2,     kReachableSpace, kTetherPlanning, kServoing,
+      kContactWatching, kReelScale, kStaircase, kRoughAir,       kRiskTruth,
   };
   return all;
 }

@@ -48,8 +48,8 @@ std::vector<Trial> trials(const Setup& setup) {
   for (const Experiment* part : kParts) {
     for (Trial& trial : part->trials(*rough)) {
       // The part's trials refer to its set-up.
-      all.push_back({partTrial(*part, trial.name),
-                     [rough, run = std::move(trial.run)] { return run(); }});
+      all.push_back(
+          {partTrial(*part, trial.name), [rough, run = std::move(trial.run)] { return run(); }});
     }
   }
   const std::shared_ptr<const Stairs> stairs = planStairs(*rough);
