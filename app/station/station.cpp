@@ -6,6 +6,9 @@
 namespace tautline {
 namespace {
 
+/// So much short of what reaches home the reel begins to stop [m].
+constexpr double kShortOfHome = 0.05;
+
 /// What an operator hears of when it comes and when it goes: all but the facts of a flight.
 constexpr ConditionSet kTold =
     ConditionSet::fromBits(~std::uint64_t{0})
@@ -144,13 +147,15 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   if (!guidance.route.active) return command;
   const RateCommand rates = controller_->update(dt, guidance.route.control);
   if (!rates.ok) return command;
-  // Where a landing may meet the floor at any moment nothing is paid out: on the floor the tether
-  // would go slack and swing.
-  const bool touches_down =
-      out_.supervision.mode == Mode::kLand &&
-      guidance.route.control.p_WE.y() < config_.guidance.home_position_m.y() &&
-      config_.guidance.isNearFloor(out_.estimate.p_WD);
-  command.length_rate = touches_down ? std::min(rates.length_rate, 0.0) : rates.length_rate;
+  // Where a landing may meet the floor at any moment no more is paid out than just reaches home: on
+  // the floor the tether would go slack and swing.
+  const Eigen::Vector3d& home = config_.guidance.home_position_m;
+  const bool touches_down = out_.supervision.mode == Mode::kLand &&
+                            guidance.route.control.p_WE.y() < home.y() &&
+                            config_.guidance.isNearFloor(out_.estimate.p_WD);
+  const bool reaches_home = out_.estimate.L_free > (home - out_.anchor.p_WA).norm() - kShortOfHome;
+  command.length_rate =
+      touches_down && reaches_home ? std::min(rates.length_rate, 0.0) : rates.length_rate;
   command.elevation_rate = rates.elevation_rate;
   command.azimuth_rate = rates.azimuth_rate;
   command.yaw_rate = guidance.route.yaw_rate;
