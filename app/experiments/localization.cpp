@@ -190,7 +190,7 @@ void addRows(const AllHoverSeries& s, Findings& findings) {
        .note = "sensors and reel without bias: what the two rows above owe to the initialization"},
       {.figure = "mean error, no bias", .unit = "m", .tautline = s[kUnbiased].mean},
       {.figure = "mean error at 1 N, no bias", .unit = "m", .tautline = s[kUnbiasedAt1N].mean},
-      {.figure = kHoversMissing,
+      {.figure = "hovers that never came about",
        .as_published = static_cast<double>(published_lost),
        .tautline = static_cast<double>(our_lost),
        .as_published_band = Band{0.0, 0.0},

@@ -9,7 +9,4 @@ namespace tautline::experiments {
 
 extern const Experiment kLocalization;
 
-/// Figure of the row that counts the hovers of which there is nothing to average.
-inline constexpr const char* kHoversMissing = "hovers that never came about";
-
 }  // namespace tautline::experiments

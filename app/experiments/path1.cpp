@@ -27,17 +27,15 @@ Findings judge(const Setup& setup, const Results& results) {
   const auto& ours = of(table, Primitive::kTautline);
   Findings findings;
   std::vector<Row>& rows = findings.rows;
-  double flown = 0.0;
-  double completed = 0.0;
-  for (const auto* law : {&position, &velocity, &ours}) {
-    flown += total(*law, &PathMeans::flights);
-    completed += total(*law, &PathMeans::completed);
-  }
+  const auto completed = [](const auto&... laws) {
+    return 100.0 * (total(laws, &PathMeans::completed) + ...) /
+           (total(laws, &PathMeans::flights) + ...);
+  };
   rows.push_back({.figure = "paths flown to their end",
                   .unit = "%",
                   .published = 100.0,
-                  .as_published = 100.0 * completed / flown,
-                  .tautline = 100.0 * completed / flown,
+                  .as_published = completed(position, velocity),
+                  .tautline = completed(ours),
                   .as_published_band = Band{100.0, 100.0},
                   .tautline_band = Band{100.0, 100.0}});
   for (const Row& row : meanRows(table, Primitive::kPosition, kGoal)) rows.push_back(row);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The published figures once more, all from one machine, in air as rough as the dissertation says
-/// that it was. Needs config/experiments/rough_air.toml.
+/// The published figures once more in air in which flights of a path end as differently as they did
+/// on the staircase. Needs config/experiments/rough_air.toml.
 
 #include "app/experiments/experiment.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What all experiments share: one plant, the two stations that are compared on it, and the
+/// What all experiments share: a plant, the two stations that are compared on it, and the
 /// published figures (config/experiments). Not real-time safe: start-up only.
 
 #include <array>
@@ -21,7 +21,7 @@ struct Setup {
   std::filesystem::path folder;  ///< Of config/experiments.
   bool quick{false};             ///< Fewer trials: a sample that CI can afford.
   std::uint64_t seed{1};         ///< Of the first trial; the same for both stations.
-  sim::SimConfig plant;          ///< plant.toml: one for all experiments.
+  sim::SimConfig plant;          ///< plant.toml: the machine of all but rough_air.
   StationConfig as_published;    ///< as_published.toml: the dissertation's software.
   StationConfig tautline;        ///< tautline.toml: ours.
 

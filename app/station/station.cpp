@@ -6,7 +6,7 @@
 namespace tautline {
 namespace {
 
-/// So much short of what reaches home the reel begins to stop [m].
+/// A landing stops its reel so much before the tether reaches home [m].
 constexpr double kShortOfHome = 0.05;
 
 /// What an operator hears of when it comes and when it goes: all but the facts of a flight.
@@ -153,9 +153,9 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   const bool touches_down = out_.supervision.mode == Mode::kLand &&
                             guidance.route.control.p_WE.y() < home.y() &&
                             config_.guidance.isNearFloor(out_.estimate.p_WD);
-  const bool reaches_home = out_.estimate.L_free > (home - out_.anchor.p_WA).norm() - kShortOfHome;
+  const bool short_of_home = out_.estimate.L_free < (home - out_.anchor.p_WA).norm() - kShortOfHome;
   command.length_rate =
-      touches_down && reaches_home ? std::min(rates.length_rate, 0.0) : rates.length_rate;
+      touches_down && !short_of_home ? std::min(rates.length_rate, 0.0) : rates.length_rate;
   command.elevation_rate = rates.elevation_rate;
   command.azimuth_rate = rates.azimuth_rate;
   command.yaw_rate = guidance.route.yaw_rate;
