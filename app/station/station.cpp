@@ -1,13 +1,14 @@
 #include "app/station/station.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace tautline {
 namespace {
 
-/// A landing stops its reel so much before the tether reaches home [m].
-constexpr double kShortOfHome = 0.05;
+/// A landing stops its reel so much before the tether reaches the floor [m].
+constexpr double kShortOfFloor = 0.05;
 
 /// What an operator hears of when it comes and when it goes: all but the facts of a flight.
 constexpr ConditionSet kTold =
@@ -140,6 +141,14 @@ void Station::enterMode(Time now) noexcept {
   }
 }
 
+/// From the anchor to the floor below the drone, or to home if that is nearer [m]. The floor is
+/// taken to be as high as home.
+double Station::lengthToFloor() const noexcept {
+  const Eigen::Vector3d p_AH = config_.guidance.home_position_m - out_.anchor.p_WA;
+  const Eigen::Vector3d p_AD = out_.estimate.p_WD - out_.anchor.p_WA;
+  return std::min(std::hypot(p_AD.x(), p_AH.y(), p_AD.z()), p_AH.norm());
+}
+
 /// Rates for the route, by the configured law; where there is none or the law cannot act, those of
 /// guidance.
 VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noexcept {
@@ -147,15 +156,15 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   if (!guidance.route.active) return command;
   const RateCommand rates = controller_->update(dt, guidance.route.control);
   if (!rates.ok) return command;
-  // Where a landing may meet the floor at any moment no more is paid out than just reaches home: on
-  // the floor the tether would go slack and swing.
+  // Where a landing may meet the floor at any moment no more is paid out than it takes to come down
+  // to it: on the floor the tether would go slack and swing.
   const Eigen::Vector3d& home = config_.guidance.home_position_m;
   const bool touches_down = out_.supervision.mode == Mode::kLand &&
                             guidance.route.control.p_WE.y() < home.y() &&
                             config_.guidance.isNearFloor(out_.estimate.p_WD);
-  const bool short_of_home = out_.estimate.L_free < (home - out_.anchor.p_WA).norm() - kShortOfHome;
+  const bool too_short = out_.estimate.L_free < lengthToFloor() - kShortOfFloor;
   command.length_rate =
-      touches_down && !short_of_home ? std::min(rates.length_rate, 0.0) : rates.length_rate;
+      touches_down && !too_short ? std::min(rates.length_rate, 0.0) : rates.length_rate;
   command.elevation_rate = rates.elevation_rate;
   command.azimuth_rate = rates.azimuth_rate;
   command.yaw_rate = guidance.route.yaw_rate;

@@ -76,6 +76,7 @@ class Station {
   [[nodiscard]] ConditionSet assess(const StepInput& in) noexcept;
   void reconfigure(Time now) noexcept;
   void enterMode(Time now) noexcept;
+  [[nodiscard]] double lengthToFloor() const noexcept;
   [[nodiscard]] VehicleCommand control(Duration dt, const GuidanceOutput& guidance) noexcept;
   [[nodiscard]] VehicleCommand override(const VehicleCommand& gated) noexcept;
   void tell(StationEvent event) noexcept;
