@@ -38,6 +38,7 @@ chosen=$("$root/toolchain/staircase_report.py" choose "$out")
 # The world to fly in: the things inside the voxels, and the platform that the drone is parked on.
 "$bin/tautline-bench" campaign --map "$map" --params "$params" --mission "$plans/$chosen.mission.toml" --inflation "$inflation" --flights 0 \
   --write-scene "$out/staircase.scene.toml" >/dev/null
+
 flown=0
 "$root/toolchain/demo.sh" --out "$out" --mission "$plans/$chosen.mission.toml" --scene "$out/staircase.scene.toml" "${more[@]}" || flown=$?
 "$root/toolchain/staircase_report.py" report "$out" "$chosen"

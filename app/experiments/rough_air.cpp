@@ -24,9 +24,7 @@ const std::array kParts{&kLocalization, &kPath1, &kPath2, &kTetherPlanning};
 constexpr const char* kTooRough =
     "air as rough as the shares of the staircase ask for is too rough for this";
 
-constexpr std::int64_t kFlightsATrial = 20;
-
-std::int64_t trialCount(const Setup& setup) { return setup.quick ? 1 : 50; }
+std::int64_t flightsOf(const Setup& setup) { return setup.quick ? 20 : 1000; }
 
 /// The set-up with what rough_air.toml has otherwise.
 std::shared_ptr<const Setup> inRoughAir(const Setup& setup) {
@@ -39,10 +37,6 @@ std::shared_ptr<const Setup> inRoughAir(const Setup& setup) {
 std::string partTrial(const Experiment& part, const std::string& trial) {
   return fmt::format("{} {}", part.name, trial);
 }
-std::string stairTrial(std::size_t station, std::size_t viewpoint, std::int64_t trial) {
-  return fmt::format("staircase {} {} {}", kStationNames[station], kViewpoints[viewpoint].name,
-                     trial);
-}
 
 std::vector<Trial> trials(const Setup& setup) {
   const std::shared_ptr<const Setup> rough = inRoughAir(setup);
@@ -54,18 +48,8 @@ std::vector<Trial> trials(const Setup& setup) {
           {partTrial(*part, trial.name), [rough, run = std::move(trial.run)] { return run(); }});
     }
   }
-  const std::shared_ptr<const Stairs> stairs = planStairs(*rough);
-  forEachStairs([&](std::size_t station, std::size_t v) {
-    for (std::int64_t i = 0; i < trialCount(setup); ++i) {
-      const StairTrial trial{
-          .seed = setup.seed + static_cast<std::uint64_t>(i * kFlightsATrial),
-          .flights = kFlightsATrial,
-      };
-      all.push_back({stairTrial(station, v, i), [stairs, station, v, trial] {
-                       return flyStairs(stairs->flights[station][v], trial);
-                     }});
-    }
-  });
+  for (Trial& trial : stairTrials(*rough, planStairs(*rough), flightsOf(setup)))
+    all.push_back(std::move(trial));
   return all;
 }
 
@@ -90,13 +74,9 @@ Findings judge(const Setup& setup, const Results& results) {
       findings.rows.push_back(std::move(row));
     }
   }
+  const StairTallies tallies = stairTallies(results, flightsOf(setup));
   for (std::size_t v = 0; v < kViewpoints.size(); ++v) {
-    std::array<CampaignTally, kStationNames.size()> tallies;
-    for (std::size_t station = 0; station < tallies.size(); ++station) {
-      for (std::int64_t i = 0; i < trialCount(setup); ++i)
-        addEnds(results.at(stairTrial(station, v, i)), tallies[station]);
-    }
-    Row success = successRow(kViewpoints[v], tallies[0], tallies[1]);
+    Row success = successRow(kViewpoints[v], tallies[0][v], tallies[1][v]);
     success.figure.insert(0, "staircase: ");
     if (setup.quick) success.as_published_band.reset();  // so few tell nothing of a share of 0.04
     findings.rows.push_back(std::move(success));

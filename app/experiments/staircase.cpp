@@ -1,6 +1,5 @@
 #include "app/experiments/staircase.h"
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <utility>
@@ -16,34 +15,12 @@ namespace {
 
 constexpr std::int64_t kQuickFlights = 20;
 constexpr std::int64_t kWholeFlights = 10000;
-constexpr std::int64_t kFlightsATrial = 20;  // of one trial: what an interrupted run loses
 
 std::int64_t flightsOf(const Setup& setup) { return setup.quick ? kQuickFlights : kWholeFlights; }
 
-std::string trialName(std::size_t station, std::size_t viewpoint, std::int64_t first) {
-  return fmt::format("{} {} {}", kStationNames[station], kViewpoints[viewpoint].name, first);
-}
-
-template <class Visit>
-void forEachTrial(const Setup& setup, Visit visit) {
-  forEachStairs([&](std::size_t station, std::size_t v) {
-    for (std::int64_t first = 0; first < flightsOf(setup); first += kFlightsATrial)
-      visit(station, v, first, std::min(kFlightsATrial, flightsOf(setup) - first));
-  });
-}
-
 std::vector<Trial> trials(const Setup& setup) {
   const std::shared_ptr<const Stairs> stairs = planStairs(setup);
-  std::vector<Trial> all;
-  forEachTrial(setup,
-               [&](std::size_t station, std::size_t v, std::int64_t first, std::int64_t count) {
-                 const StairTrial trial{.seed = setup.seed + static_cast<std::uint64_t>(first),
-                                        .flights = count,
-                                        .tracks = first == 0};
-                 all.push_back({trialName(station, v, first), [stairs, station, v, trial] {
-                                  return flyStairs(stairs->flights[station][v], trial);
-                                }});
-               });
+  std::vector<Trial> all = stairTrials(setup, stairs, flightsOf(setup));
   for (Trial& trial : stairPullTrials(setup, stairs)) all.push_back(std::move(trial));
   return all;
 }
@@ -92,7 +69,7 @@ Picture flightsPicture(const Stairs& stairs, const Results& results, std::size_t
     for (const Eigen::Vector3d& p : stairs.paths[v].points)
       planned.points.push_back(p - *stairs.space.space.map->reel);
     drawing.curves.push_back(std::move(planned));
-    const nlohmann::json& trial = results.at(trialName(station, v, 0));
+    const nlohmann::json& trial = results.at(stairTrialName(station, v, 0));
     for (std::size_t flight = 0; flight < 5 && flight < trial.at("tracks").size(); ++flight) {
       plot::SpaceCurve flown{
           .name = flight == 0 ? fmt::format("{}, flown (five flights)", kViewpoints[v].name)
@@ -125,11 +102,7 @@ std::string whyPublishedMisses(const Setup& setup, double share, const Band& ban
 
 Findings judge(const Setup& setup, const Results& results) {
   const std::shared_ptr<const Stairs> stairs = planStairs(setup);
-  StairTallies tallies;
-  forEachTrial(setup,
-               [&](std::size_t station, std::size_t v, std::int64_t first, std::int64_t /*count*/) {
-                 addEnds(results.at(trialName(station, v, first)), tallies[station][v]);
-               });
+  const StairTallies tallies = stairTallies(results, flightsOf(setup));
   Findings findings;
   for (std::size_t v = 0; v < kViewpoints.size(); ++v) {
     const Viewpoint& view = kViewpoints[v];

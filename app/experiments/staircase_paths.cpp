@@ -1,5 +1,7 @@
 #include "app/experiments/staircase_paths.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "app/experiments/binomial.h"
@@ -7,6 +9,18 @@
 #include "common/error.h"
 
 namespace tautline::experiments {
+namespace {
+
+constexpr std::int64_t kFlightsATrial = 20;  // what an interrupted run loses
+
+template <class Visit>
+void forEachTrial(std::int64_t flights, Visit visit) {
+  forEachStairs([&](std::size_t station, std::size_t v) {
+    for (std::int64_t first = 0; first < flights; first += kFlightsATrial) visit(station, v, first);
+  });
+}
+
+}  // namespace
 
 std::shared_ptr<const Stairs> planStairs(const Setup& setup) {
   const auto config = setup.folder / "..";
@@ -51,6 +65,32 @@ nlohmann::json flyStairs(const CampaignFlight& flight, const StairTrial& trial) 
 
 void addEnds(const nlohmann::json& result, CampaignTally& tally) {
   for (const auto& end : result.at("ends")) tally.add(verdictFrom(end));
+}
+
+std::string stairTrialName(std::size_t station, std::size_t viewpoint, std::int64_t first) {
+  return fmt::format("{} {} {}", kStationNames[station], kViewpoints[viewpoint].name, first);
+}
+
+std::vector<Trial> stairTrials(const Setup& setup, const std::shared_ptr<const Stairs>& stairs,
+                               std::int64_t flights) {
+  std::vector<Trial> all;
+  forEachTrial(flights, [&](std::size_t station, std::size_t v, std::int64_t first) {
+    const StairTrial trial{.seed = setup.seed + static_cast<std::uint64_t>(first),
+                           .flights = std::min(kFlightsATrial, flights - first),
+                           .tracks = first == 0};
+    all.push_back({stairTrialName(station, v, first), [stairs, station, v, trial] {
+                     return flyStairs(stairs->flights[station][v], trial);
+                   }});
+  });
+  return all;
+}
+
+StairTallies stairTallies(const Results& results, std::int64_t flights) {
+  StairTallies tallies;
+  forEachTrial(flights, [&](std::size_t station, std::size_t v, std::int64_t first) {
+    addEnds(results.at(stairTrialName(station, v, first)), tallies[station][v]);
+  });
+  return tallies;
 }
 
 Row successRow(const Viewpoint& view, const CampaignTally& as_published,

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -73,6 +75,16 @@ struct StairTrial {
 [[nodiscard]] nlohmann::json flyStairs(const CampaignFlight& flight, const StairTrial& trial);
 /// Adds what flyStairs() returned.
 void addEnds(const nlohmann::json& result, CampaignTally& tally);
+
+/// So many flights of each station to each viewpoint, a few a trial; the first few with their ways.
+[[nodiscard]] std::vector<Trial> stairTrials(const Setup& setup,
+                                             const std::shared_ptr<const Stairs>& stairs,
+                                             std::int64_t flights);
+/// Of the trial that begins with this flight.
+[[nodiscard]] std::string stairTrialName(std::size_t station, std::size_t viewpoint,
+                                         std::int64_t first);
+/// How the flights of stairTrials() ended.
+[[nodiscard]] StairTallies stairTallies(const Results& results, std::int64_t flights);
 
 /// Share of flights that finish, against the exact 95 % interval of the published trials; `ours` is
 /// told, not judged.

@@ -158,13 +158,11 @@ VehicleCommand Station::control(Duration dt, const GuidanceOutput& guidance) noe
   if (!rates.ok) return command;
   // Where a landing may meet the floor at any moment no more is paid out than it takes to come down
   // to it: on the floor the tether would go slack and swing.
-  const Eigen::Vector3d& home = config_.guidance.home_position_m;
-  const bool touches_down = out_.supervision.mode == Mode::kLand &&
-                            guidance.route.control.p_WE.y() < home.y() &&
-                            config_.guidance.isNearFloor(out_.estimate.p_WD);
-  const bool too_short = out_.estimate.L_free < lengthToFloor() - kShortOfFloor;
-  command.length_rate =
-      touches_down && !too_short ? std::min(rates.length_rate, 0.0) : rates.length_rate;
+  const bool stops_reel = out_.supervision.mode == Mode::kLand &&
+                          guidance.route.control.p_WE.y() < config_.guidance.home_position_m.y() &&
+                          config_.guidance.isNearFloor(out_.estimate.p_WD) &&
+                          !(out_.estimate.L_free < lengthToFloor() - kShortOfFloor);
+  command.length_rate = stops_reel ? std::min(rates.length_rate, 0.0) : rates.length_rate;
   command.elevation_rate = rates.elevation_rate;
   command.azimuth_rate = rates.azimuth_rate;
   command.yaw_rate = guidance.route.yaw_rate;
